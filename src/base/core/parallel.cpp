@@ -1,5 +1,6 @@
 #include "base/core/parallel.h"
 
+#include "base/core/forecast.h"
 #include "base/core/thread_limit.h"
 
 #include <oneapi/tbb/enumerable_thread_specific.h>
@@ -51,9 +52,20 @@ class Ordering {
   char begin_ = 0, end_ = 0;
 };
 
+/// TBB may divide a range down to single indices; so many parts show whether they are even.
+constexpr std::size_t kPartsOfForecast = 256;
+
+const bool kForecast = forecast_threads() > 0;
+
+void forecast_ranges(std::size_t n, Split split, FunctionRef<void(std::size_t begin, std::size_t end)> body) {
+  const std::size_t parts = split == Split::kSingly ? n : std::min(n, kPartsOfForecast);
+  if (parts > 0) forecast_region(parts, [&](std::size_t k) { body(n * k / parts, n * (k + 1) / parts); });
+}
+
 }  // namespace
 
 void parallel_ranges(std::size_t n, Split split, FunctionRef<void(std::size_t begin, std::size_t end)> body) {
+  if (kForecast) return forecast_ranges(n, split, body);
   using Range = tbb::blocked_range<std::size_t>;
   Ordering ordering;
   const auto run = [&](const Range& range) { ordering.within([&] { body(range.begin(), range.end()); }); };
@@ -68,10 +80,15 @@ bool has_threads() {
 }
 
 std::size_t thread_count() {
+  if (kForecast) return forecast_threads();
   return tbb::global_control::active_value(tbb::global_control::max_allowed_parallelism);
 }
 
 void parallel_invoke(FunctionRef<void()> a, FunctionRef<void()> b) {
+  if (kForecast) {
+    forecast_region(2, [&](std::size_t k) { k == 0 ? a() : b(); });
+    return;
+  }
   Ordering ordering;
   tbb::parallel_invoke([&] { ordering.within(a); }, [&] { ordering.within(b); });
 }

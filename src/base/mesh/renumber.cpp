@@ -1,8 +1,21 @@
 #include "base/mesh/renumber.h"
 
+#include "base/core/shared_value.h"
+
 #include <algorithm>
 
 namespace octafront {
+
+namespace {
+
+template <class Rows>
+void mark_used(const Rows& rows, std::vector<VertexIndex>& number) {
+  parallel_for(rows.size(), [&](std::size_t i) {
+    for (const VertexIndex v : rows[i]) SharedValue(number[v]).store(0);
+  });
+}
+
+}  // namespace
 
 void keep_numbered(std::vector<Vec3>& points, std::vector<VertexIndex>& number) {
   VertexIndex next = 0;
@@ -36,18 +49,15 @@ void renumber_vertices(TetMesh& mesh, const std::vector<VertexIndex>& number) {
 void drop_unused_points(TetMesh& mesh, std::size_t kept) {
   std::vector<VertexIndex> number(mesh.points.size(), kNone);
   std::fill_n(number.begin(), kept, 0);
-  for (const Tet& t : mesh.tets)
-    for (const VertexIndex v : t) number[v] = 0;
-  for (const auto& mids : mesh.mid_nodes)
-    for (const VertexIndex v : mids) number[v] = 0;
+  mark_used(mesh.tets, number);
+  mark_used(mesh.mid_nodes, number);
   keep_numbered(mesh.points, number);
   renumber_vertices(mesh, number);
 }
 
 void drop_unused_points(std::vector<Vec3>& points, std::vector<Triangle>& triangles) {
   std::vector<VertexIndex> number(points.size(), kNone);
-  for (const Triangle& t : triangles)
-    for (const VertexIndex v : t) number[v] = 0;
+  mark_used(triangles, number);
   keep_numbered(points, number);
   renumber(triangles, number);
 }

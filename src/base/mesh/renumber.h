@@ -3,6 +3,8 @@
 #include <octafront/tet_mesh.h>
 #include <octafront/vec.h>
 
+#include "base/core/parallel.h"
+
 #include <cstddef>
 #include <vector>
 
@@ -14,8 +16,9 @@ void keep_numbered(std::vector<Vec3>& points, std::vector<VertexIndex>& number);
 /// Replaces each vertex of the rows (triangles, tets, edges) by its new number.
 template <class Rows>
 void renumber(Rows& rows, const std::vector<VertexIndex>& number) {
-  for (auto& row : rows)
-    for (VertexIndex& v : row) v = number[v];
+  parallel_for(rows.size(), [&](std::size_t i) {
+    for (VertexIndex& v : rows[i]) v = number[v];
+  });
 }
 
 /// Replaces each vertex in all arrays of a mesh but `points`; vertices whose number is kNone leave the sets of nodes.

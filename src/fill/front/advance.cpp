@@ -16,11 +16,11 @@ namespace octafront {
 namespace {
 
 constexpr int kMostRounds = 8;
-/// A queue of no more faces than this is worked off to its end in one block.
-constexpr std::size_t kSmallQueue = 1500;
-/// Queued faces in a block: their front fits the second-level cache. From 600 to 4000, time and quality change by less
+/// A queue of no more faces than this is worked off to its end in one block: no thread can help with it.
+constexpr std::size_t kSmallQueue = 500;
+/// Queued faces in a block: its front fits the second-level cache. From 500 to 4000, time and quality change by less
 /// than what two runs differ by; fewer faces share better among many threads.
-constexpr std::size_t kFacesPerBlock = 1500;
+constexpr std::size_t kFacesPerBlock = 500;
 /// Layers that a block works off in one phase. Its neighbours then meet a step of as many layers in the front, which
 /// costs no quality (1 to 100 layers: mean beta .8237 to .8250, below .2 .049 to .058 %); 1 costs a tenth more time.
 constexpr int kLayersPerPhase = 4;

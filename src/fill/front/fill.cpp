@@ -21,6 +21,8 @@
 #include <array>
 #include <cmath>
 #include <exception>
+#include <span>
+#include <utility>
 
 namespace octafront {
 
@@ -107,6 +109,30 @@ void set_sizes(FrontState& front, const SizeField& sizes) {
                [&](std::size_t v) { front.sizes[v] = static_cast<float>(sizes.at(front.points[v])); });
 }
 
+constexpr std::size_t kPiecesAtOnce = 256;
+
+/// One array: that of the first piece, the core, if it has room. Some pieces at a time, which are freed then: not all
+/// are there twice.
+std::vector<Tet> put_together(std::vector<FilledPiece>& pieces) {
+  if (pieces.empty()) return {};
+  std::size_t all = 0;
+  for (const FilledPiece& piece : pieces) all += piece.tets.size();
+  std::vector<Tet> tets = std::move(pieces[0].tets);
+  tets.reserve(all);
+  for (std::size_t first = 1; first < pieces.size(); first += kPiecesAtOnce) {
+    const std::span<FilledPiece> some(pieces.data() + first, std::min(kPiecesAtOnce, pieces.size() - first));
+    std::vector<std::size_t> to;
+    std::size_t end = tets.size();
+    for (const FilledPiece& piece : some) to.push_back(std::exchange(end, end + piece.tets.size()));
+    tets.resize(end);
+    parallel_for(some.size(), [&](std::size_t i) {
+      const std::vector<Tet> piece = std::move(some[i].tets);
+      std::copy(piece.begin(), piece.end(), tets.begin() + static_cast<std::ptrdiff_t>(to[i]));
+    });
+  }
+  return tets;
+}
+
 /// The pieces one after the other, in one array: those of this rank. What every rank made is the first one's.
 FrontTets joined(std::vector<FilledPiece>& pieces, const Comm& comm) {
   std::vector<std::int64_t> size;
@@ -121,15 +147,7 @@ FrontTets joined(std::vector<FilledPiece>& pieces, const Comm& comm) {
   std::uint64_t number = 0;
   for (std::size_t i = 0; i < pieces.size(); number += static_cast<std::uint64_t>(size[i++]))
     if (!pieces[i].tets.empty()) share.stretches.push_back({first[i], number});
-  if (pieces.size() == 1) {
-    share.tets = std::move(pieces[0].tets);
-    return share;
-  }
-  share.tets.resize(first.back());
-  parallel_for(pieces.size(), [&](std::size_t i) {
-    const std::vector<Tet> piece = std::move(pieces[i].tets);
-    std::copy(piece.begin(), piece.end(), share.tets.begin() + static_cast<std::ptrdiff_t>(first[i]));
-  });
+  share.tets = put_together(pieces);
   return share;
 }
 

@@ -5,6 +5,7 @@
 #include "base/comm/marks.h"
 #include "base/comm/packing.h"
 #include "base/comm/shares.h"
+#include "base/core/buckets.h"
 #include "base/core/parallel.h"
 #include "base/core/shared_value.h"
 #include "base/geometry/triangle_tree.h"
@@ -29,6 +30,15 @@ namespace {
 using Sites = std::array<LatticeSite, 4>;
 
 constexpr std::size_t kLeavesPerChunk = 4096;
+/// Of a chunk without leaves of other sizes, and more: arrays of a megabyte and more go back to the system once they
+/// are freed, and room that is not used costs nothing.
+constexpr std::size_t kRoomOfChunk = 17 * kLeavesPerChunk;
+/// Chunks that are joined at a time, .8 million tetrahedra: so many are there twice.
+constexpr std::size_t kChunksAtOnce = 16;
+/// What the front makes comes behind the core, in the same array where there is room: as address space it costs
+/// nothing. At a million elements a quarter is the front's, and ever less where there are more.
+constexpr double kRoomForFront = 1.5;
+constexpr std::size_t kFacesAtOnce = 8192;
 
 /// The tetrahedra of a stretch of leaves that belong to the core, and the faces between them and the rest.
 class CoreChunk {
@@ -52,6 +62,7 @@ class CoreChunk {
 
     void run(std::size_t first, std::size_t last) {
       const Octree& tree = sites_.lattice().tree;
+      chunk_.tets.reserve(kRoomOfChunk);
       for (std::size_t i = first; i < last; ++i)
         if (!sites_.is_far_outside(i)) for_each_lattice_tet_of(tree, i, [&](const Sites& tet) { add(tet); });
       chunk_.hanging = table_.sites();
@@ -180,8 +191,9 @@ class CoreBuilder {
     parallel_for(vertex_.size(), [&](std::size_t s) {
       if (vertex_[s] != kNone) core_.points[vertex_[s]] = sites_.position_of(static_cast<SiteNumber>(s));
     });
-    for (std::size_t i = 0; i < hanging_.size(); ++i)
+    parallel_for(hanging_.size(), [&](std::size_t i) {
       core_.points[first_hanging_ + i] = position(sites_.lattice().root, hanging_[i]);
+    });
   }
 
   /// kNone if no tetrahedron of the core has this corner.
@@ -193,36 +205,65 @@ class CoreBuilder {
     return first_hanging_ + static_cast<VertexIndex>(at - hanging_.begin());
   }
 
+  /// Some chunks at a time, which are freed then: not all are there twice.
   void take_tets() {
-    std::vector<std::size_t> first(chunks_.size() + 1, 0);
-    for (std::size_t c = 0; c < chunks_.size(); ++c) first[c + 1] = first[c] + chunks_[c].tets.size();
-    require_in_range(first.back(), kMostTets, "tetrahedra");
-    core_.tets.resize(first.back());
-    parallel_for(chunks_.size(), [&](std::size_t c) {
-      Tet* out = core_.tets.data() + first[c];
-      for (const Tet& t : chunks_[c].tets)
-        *out++ = {vertex(chunks_[c], t[0]), vertex(chunks_[c], t[1]), vertex(chunks_[c], t[2]),
-                  vertex(chunks_[c], t[3])};
-      chunks_[c].tets = std::vector<Tet>();
-    });
+    std::size_t all = 0;
+    for (const CoreChunk& chunk : chunks_) all += chunk.tets.size();
+    require_in_range(all, kMostTets, "tetrahedra");
+    core_.tets.reserve(static_cast<std::size_t>(kRoomForFront * static_cast<double>(all)));
+    for (std::size_t first = 0; first < chunks_.size(); first += kChunksAtOnce)
+      take_tets_of(first, std::min(first + kChunksAtOnce, chunks_.size()));
+  }
+
+  void take_tets_of(std::size_t first, std::size_t last) {
+    std::vector<std::size_t> to;
+    std::size_t end = core_.tets.size();
+    for (std::size_t c = first; c < last; ++c) to.push_back(std::exchange(end, end + chunks_[c].tets.size()));
+    core_.tets.resize(end);
+    parallel_for(
+        last - first,
+        [&](std::size_t i) {
+          CoreChunk& chunk = chunks_[first + i];
+          Tet* out = core_.tets.data() + to[i];
+          for (const Tet& t : chunk.tets)
+            *out++ = {vertex(chunk, t[0]), vertex(chunk, t[1]), vertex(chunk, t[2]), vertex(chunk, t[3])};
+          chunk.tets = std::vector<Tet>();
+        },
+        Split::kSingly);
   }
 
   /// A clear face between two tetrahedra that do not belong to the core is found twice and bounds nothing.
   void take_skin() {
-    std::vector<Triangle> faces;
-    for (const CoreChunk& chunk : chunks_)
-      for (const Triangle& t : chunk.candidates) {
-        const Triangle face{vertex(chunk, t[0]), vertex(chunk, t[1]), vertex(chunk, t[2])};
-        if (face[0] != kNone && face[1] != kNone && face[2] != kNone) faces.push_back(face);
-      }
-    faces = gathered_lists(comm_, faces, "skin of the lattice");
-    std::vector<char> single(faces.size(), 0);
-    face_table(core_.points.size(), faces)
-        .for_each_group([&](const Triangle&, std::span<const FaceTable::Entry> on_face) {
-          if (on_face.size() == 1) single[on_face[0].face] = 1;
+    const std::vector<Triangle> faces = gathered_lists(comm_, candidates(), "skin of the lattice");
+    std::vector<std::uint8_t> single(faces.size(), 0);
+    const RangeBuckets ranges(core_.points.size());
+    const Buckets<> of_range(faces.size(), ranges.count(), [&](std::size_t i, const auto& add) {
+      add(ranges.of(face_key(faces[i])[0]), static_cast<std::uint32_t>(i));
+    });
+    parallel_for(ranges.count(), [&](std::size_t r) {
+      FaceTable(static_cast<VertexIndex>(ranges.begin(r)), ranges.end(r) - ranges.begin(r), [&](const auto& add) {
+        for (const std::uint32_t i : of_range[r]) add(faces[i], i);
+      }).for_each_group([&](const Triangle&, std::span<const FaceTable::Entry> on_face) {
+        if (on_face.size() == 1) single[on_face[0].face] = 1;
+      });
+    });
+    core_.skin = parallel_collect<Triangle>(faces.size(), kFacesAtOnce,
+                                            [&](std::size_t begin, std::size_t end, std::vector<Triangle>& skin) {
+                                              for (std::size_t i = begin; i < end; ++i)
+                                                if (single[i]) skin.push_back(faces[i]);
+                                            });
+  }
+
+  /// Those of all chunks of which the core has the corners.
+  std::vector<Triangle> candidates() const {
+    return parallel_collect<Triangle>(
+        chunks_.size(), 1, [&](std::size_t begin, std::size_t end, std::vector<Triangle>& faces) {
+          for (std::size_t c = begin; c < end; ++c)
+            for (const Triangle& t : chunks_[c].candidates) {
+              const Triangle face{vertex(chunks_[c], t[0]), vertex(chunks_[c], t[1]), vertex(chunks_[c], t[2])};
+              if (face[0] != kNone && face[1] != kNone && face[2] != kNone) faces.push_back(face);
+            }
         });
-    for (std::size_t i = 0; i < faces.size(); ++i)
-      if (single[i]) core_.skin.push_back(faces[i]);
   }
 
   const ClearSites& sites_;

@@ -5,6 +5,7 @@
 #include <octafront/run_context.h>
 
 #include "base/comm/comm.h"
+#include "base/core/forecast.h"
 #include "base/core/stage.h"
 #include "base/core/stage_timer.h"
 #include "base/core/thread_limit.h"
@@ -47,6 +48,7 @@ class Run {
     StageReport& entry = report.stages.emplace_back();
     entry.name = name;
     const StageTimer timer(entry);
+    const StageForecast forecast(entry);
     const StageUse use(context_, entry);
     return comm().attempt(name, Comm::Telling::kNamesRank, [&] {
       context_.check();

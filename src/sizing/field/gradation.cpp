@@ -11,19 +11,24 @@
 //
 // Three steps. A shortest-path sweep over the corners, along the edges of leaves, gives values that are too large by up
 // to that factor. (Diagonals as well bring it nearer, but cost more than they save below.) Then leaves are visited from
-// small to large sizes, and where (*) fails the highest of the four values are cut off at the level at which it holds;
-// a few rounds suffice, since every cut is made by smaller values, which are settled before. What is left (below
-// kTolerance) is removed by shrinking all differences by one factor. (Stopping corners exactly, in the order of their
-// values, while a level rises needs no last step, but each corner has to be asked several times: twenty times slower.)
+// small to large sizes, in groups of about one size, and where (*) fails the highest of the four values are cut off at
+// the level at which it holds; a few rounds suffice, since every cut is made by smaller values, which are settled
+// before. Leaves of a group are cut at the same time, none sees what others cut, and the least that any leaves a corner
+// holds: so threads share them, and their number is not seen. What is left (below kTolerance) is removed by shrinking
+// all differences by one factor. (Stopping corners exactly, in the order of their values, while a level rises needs no
+// last step, but each corner has to be asked several times: twenty times slower.)
 
 #include "sizing/field/gradation.h"
 
 #include "base/core/groups.h"
 #include "base/core/parallel.h"
+#include "base/core/shared_value.h"
 
 #include <algorithm>
+#include <atomic>
 #include <cmath>
-#include <queue>
+#include <span>
+#include <utility>
 
 namespace octafront {
 
@@ -36,9 +41,21 @@ constexpr double kTolerance = 1e-3;
 /// Rounds end when nothing exceeds it; this bound is never met in practice, and what exceeds it then is shrunk away
 /// too.
 constexpr int kMostRounds = 60;
-/// Hanging corners of one leaf that share a free corner can move each other in circles; after these rounds all that
-/// lies behind a hanging corner is cut at the level.
-constexpr int kGentleRounds = 6;
+/// Hanging corners of one leaf that share a free corner can move each other in circles; after these passes over a group
+/// all that lies behind a hanging corner is cut at the level.
+constexpr int kGentlePasses = 12;
+/// Passes over a group end when nothing in it exceeds the gradation; what this bound leaves is left to the next round.
+constexpr int kMostPasses = 30;
+/// Leaves of which the smallest corners differ by less are one group: about one leaf lies between its ends.
+constexpr double kRatioInGroup = 1.1;
+constexpr int kColours = 4;
+constexpr std::size_t kCornersAtOnce = 1024, kLeavesAtOnce = 256;
+
+/// A free corner is to be no higher.
+struct Cut {
+  std::uint32_t corner;
+  double value, source;
+};
 
 class Grader {
  public:
@@ -55,7 +72,7 @@ class Grader {
     dirty_.assign(tree_.size(), 1);
     for (int round = 1; round <= kMostRounds; ++round) {
       context.check();
-      if (!cut_steep_leaves(round)) break;
+      if (!cut_steep_leaves()) break;
     }
     shrink();
     GradedCorners result{std::vector<double>(value_.size()), std::vector<double>(value_.size())};
@@ -68,21 +85,19 @@ class Grader {
   }
 
  private:
-  double at(const std::vector<double>& of_free, std::uint32_t corner) const {
-    if (!corners_.hangs(corner)) return of_free[corner];
+  /// `of_free(corner)`: what free corners have.
+  template <class OfFree>
+  double at_corner(std::uint32_t corner, const OfFree& of_free) const {
+    if (!corners_.hangs(corner)) return of_free(corner);
     double sum = 0;
-    for (const OctreeCorners::Share& s : corners_.shares_of(corner)) sum += s.weight * of_free[s.corner];
+    for (const OctreeCorners::Share& s : corners_.shares_of(corner)) sum += s.weight * of_free(s.corner);
     return sum;
   }
-  double at(std::uint32_t corner) const { return at(value_, corner); }
+  double at(const std::vector<double>& of_free, std::uint32_t corner) const {
+    return at_corner(corner, [&](std::uint32_t c) { return of_free[c]; });
+  }
 
-  // --- shortest paths: Dijkstra with sources everywhere; hanging corners take part like others here
-
-  struct Label {
-    double value;
-    std::uint32_t corner;
-    bool operator<(const Label& b) const { return value != b.value ? value > b.value : corner > b.corner; }
-  };
+  // --- shortest paths with sources everywhere; hanging corners take part like others here
 
   void collect_leaves() {
     leaves_ = group_by_owner(corners_.size(), static_cast<std::uint32_t>(8 * tree_.size()),
@@ -91,41 +106,91 @@ class Grader {
 
   /// Calls visit(corner, value) for each corner that an edge of a leaf joins to `from` and that its value limits.
   template <class Visit>
-  void for_each_limited(std::uint32_t from, Visit&& visit) const {
+  void for_each_limited(std::uint32_t from, Visit&& visit) {
     for (const std::uint32_t i : leaves_[from]) {
       const std::uint32_t leaf = i / 8, k = i % 8;
       const double rise = slope_ / (1u << tree_.leaf(leaf).level());
       for (std::uint32_t d = 1; d < 8; d *= 2) {
         const std::uint32_t to = corners_.of_leaf[leaf][k ^ d];
-        const double v = value_[from] + rise;
-        if (v < value_[to]) visit(to, v);
+        const double v = SharedValue(value_[from]).load() + rise;
+        if (v < SharedValue(value_[to]).load()) visit(to, v);
       }
     }
   }
 
+  /// Each corner that was lowered lowers its neighbours in turn, until none is left: in any order the least sums
+  /// remain.
   void sweep_shortest_paths(const RunContext& context) {
     collect_leaves();
-    constexpr std::size_t kRange = 4096;
-    auto start = parallel_collect<Label>(value_.size(), kRange,
-                                         [&](std::size_t begin, std::size_t end, std::vector<Label>& out) {
-                                           for (auto c = static_cast<std::uint32_t>(begin); c < end; ++c) {
-                                             bool limits = false;
-                                             for_each_limited(c, [&](std::uint32_t, double) { limits = true; });
-                                             if (limits) out.push_back({value_[c], c});
-                                           }
-                                         });
-    std::priority_queue<Label> heap(std::less<Label>(), std::move(start));
-    for (std::size_t steps = 0; !heap.empty(); ++steps) {
-      if (steps % 4096 == 0) context.check();
-      const Label label = heap.top();
-      heap.pop();
-      if (label.value > value_[label.corner]) continue;
-      for_each_limited(label.corner, [&](std::uint32_t to, double v) {
-        value_[to] = v;
-        source_[to] = source_[label.corner];
-        heap.push({v, to});
-      });
+    const std::vector<double> caps = value_;
+    std::vector<std::uint32_t> lowered = parallel_collect<std::uint32_t>(
+        value_.size(), kCornersAtOnce, [&](std::size_t begin, std::size_t end, std::vector<std::uint32_t>& out) {
+          for (auto c = static_cast<std::uint32_t>(begin); c < end; ++c) {
+            bool limits = false;
+            for_each_limited(c, [&](std::uint32_t, double) { limits = true; });
+            if (limits) out.push_back(c);
+          }
+        });
+    std::vector<std::uint8_t> waits(value_.size(), 0);
+    while (!lowered.empty()) {
+      context.check();
+      lowered = lower_neighbours_of(lowered, waits);
+      parallel_for(lowered.size(), [&](std::size_t i) { waits[lowered[i]] = 0; });
     }
+    take_sources(caps);
+  }
+
+  /// Returns those that it lowers, each once. `waits`: whether a corner is among them.
+  std::vector<std::uint32_t> lower_neighbours_of(const std::vector<std::uint32_t>& corners,
+                                                 std::vector<std::uint8_t>& waits) {
+    return parallel_collect<std::uint32_t>(corners.size(), kCornersAtOnce,
+                                           [&](std::size_t begin, std::size_t end, std::vector<std::uint32_t>& out) {
+                                             for (std::size_t i = begin; i < end; ++i)
+                                               for_each_limited(corners[i], [&](std::uint32_t to, double v) {
+                                                 SharedValue(value_[to]).lower_to(v);
+                                                 if (!SharedValue(waits[to]).exchange(1)) out.push_back(to);
+                                               });
+                                           });
+  }
+
+  /// A corner has the source of the one that lowered it, which has its own from another: of those from which its value
+  /// comes the least one, and the first of these.
+  void take_sources(const std::vector<double>& caps) {
+    std::vector<std::uint32_t> from(value_.size()), next(value_.size());
+    parallel_for(value_.size(), [&](std::size_t c) {
+      from[c] = static_cast<std::uint32_t>(c);
+      if (value_[c] < caps[c]) from[c] = lowered_by(static_cast<std::uint32_t>(c));
+    });
+    for (bool moved = true; moved; from.swap(next)) {
+      std::atomic<bool> any{false};
+      parallel_ranges(from.size(), Split::kAdaptive, [&](std::size_t begin, std::size_t end) {
+        bool here = false;
+        for (std::size_t c = begin; c < end; ++c) {
+          next[c] = from[from[c]];
+          here = here || next[c] != from[c];
+        }
+        if (here) any = true;
+      });
+      moved = any;
+    }
+    // Where paths begin sources stay.
+    parallel_for(value_.size(), [&](std::size_t c) {
+      if (from[c] != c) source_[c] = source_[from[c]];
+    });
+  }
+
+  std::uint32_t lowered_by(std::uint32_t corner) const {
+    std::uint32_t best = corner;
+    for (const std::uint32_t i : leaves_[corner]) {
+      const std::uint32_t leaf = i / 8, k = i % 8;
+      const double rise = slope_ / (1u << tree_.leaf(leaf).level());
+      for (std::uint32_t d = 1; d < 8; d *= 2) {
+        const std::uint32_t by = corners_.of_leaf[leaf][k ^ d];
+        if (value_[by] + rise != value_[corner]) continue;
+        if (best == corner || std::pair(value_[by], by) < std::pair(value_[best], best)) best = by;
+      }
+    }
+    return best;
   }
 
   // --- cuts
@@ -143,7 +208,11 @@ class Grader {
     });
     parallel_sort(order);
     order_.resize(order.size());
-    for (std::size_t i = 0; i < order.size(); ++i) order_[i] = order[i].second;
+    parallel_for(order.size(), [&](std::size_t i) { order_[i] = order[i].second; });
+    for (auto begin = order.begin(); begin != order.end();) {
+      begin = std::lower_bound(begin + 1, order.end(), std::pair(begin->first * kRatioInGroup, 0u));
+      groups_.push_back(static_cast<std::size_t>(begin - order.begin()));
+    }
   }
 
   double bound_of(std::uint32_t leaf) const { return slope_ / (1u << tree_.leaf(leaf).level()); }
@@ -155,15 +224,9 @@ class Grader {
                    }};
   }
 
-  /// Lowers a free corner; the leaves that see it have to be looked at (again).
-  void lower(std::uint32_t corner, double value, double source) {
-    value_[corner] = value;
-    source_[corner] = source;
-    const auto mark = [&](std::uint32_t c) {
-      for (const std::uint32_t i : leaves_[c]) dirty_[i / 8] = 1;
-    };
-    mark(corner);
-    for (const std::uint32_t c : dependents_[corner]) mark(c);
+  /// The leaves that see a corner have to be looked at (again).
+  void mark(std::uint32_t corner) {
+    for (const std::uint32_t i : leaves_[corner]) SharedValue(dirty_[i / 8]).store(1);
   }
 
   static double squared_slope(const std::array<double, 8>& h, int c) {
@@ -171,11 +234,15 @@ class Grader {
     return x * x + y * y + z * z;
   }
 
-  std::array<double, 8> values_of(std::uint32_t leaf) const {
+  template <class OfFree>
+  std::array<double, 8> values_of(std::uint32_t leaf, const OfFree& of_free) const {
     std::array<double, 8> h;
     const auto& corner = corners_.of_leaf[leaf];
-    for (int k = 0; k < 8; ++k) h[k] = plain_[leaf] ? value_[corner[k]] : at(corner[k]);
+    for (int k = 0; k < 8; ++k) h[k] = plain_[leaf] ? of_free(corner[k]) : at_corner(corner[k], of_free);
     return h;
+  }
+  std::array<double, 8> values_of(std::uint32_t leaf) const {
+    return values_of(leaf, [&](std::uint32_t c) { return value_[c]; });
   }
 
   double tolerated(std::uint32_t leaf) const {
@@ -198,21 +265,80 @@ class Grader {
   }
 
   /// True if anything was cut.
-  bool cut_steep_leaves(int round) {
+  bool cut_steep_leaves() {
     forget_gentle_leaves();
     bool any = false;
-    for (const std::uint32_t leaf : order_) {
-      if (!dirty_[leaf]) continue;
-      dirty_[leaf] = 0;
-      std::array<double, 8> h = values_of(leaf);
-      for (int c = 0; c < 8; ++c) {
-        if (squared_slope(h, c) <= tolerated(leaf)) continue;
+    std::size_t begin = 0;
+    for (const std::size_t end : groups_) {
+      const std::span<const std::uint32_t> group(order_.data() + begin, order_.data() + end);
+      for (int pass = 1; pass <= kMostPasses; ++pass) {
+        if (!cut_in_group(group, pass <= kGentlePasses)) break;
         any = true;
-        cut(leaf, c, level_of_cut(h, c, bound_of(leaf)), round, h);
-        h = values_of(leaf);
       }
+      begin = end;
     }
     return any;
+  }
+
+  bool cut_in_group(std::span<const std::uint32_t> group, bool gently) {
+    bool any = false;
+    for (int colour = 0; colour < kColours; ++colour) {
+      const std::vector<Cut> cuts = cuts_of(group, colour, gently);
+      make(cuts);
+      any = any || !cuts.empty();
+    }
+    return any;
+  }
+
+  /// Of eight children two are of one colour, which share a corner alone.
+  int colour_of(std::uint32_t leaf) const {
+    const int child = tree_.leaf(leaf).child_number();
+    return std::min(child, 7 - child);
+  }
+
+  /// What the dirty leaves of a group and colour ask of their corners.
+  std::vector<Cut> cuts_of(std::span<const std::uint32_t> group, int colour, bool gently) {
+    return parallel_collect<Cut>(group.size(), kLeavesAtOnce,
+                                 [&](std::size_t begin, std::size_t end, std::vector<Cut>& cuts) {
+                                   for (const std::uint32_t leaf : group.subspan(begin, end - begin)) {
+                                     if (!dirty_[leaf] || colour_of(leaf) != colour) continue;
+                                     dirty_[leaf] = 0;
+                                     collect_cuts(leaf, gently, cuts);
+                                   }
+                                 });
+  }
+
+  /// Of the cuts of a corner the lowest holds; of several such, the least source.
+  void make(const std::vector<Cut>& cuts) {
+    if (cuts.empty()) return;
+    parallel_for(cuts.size(), [&](std::size_t i) { SharedValue(value_[cuts[i].corner]).lower_to(cuts[i].value); });
+    const auto for_each_that_holds = [&](const auto& visit) {
+      parallel_for(cuts.size(), [&](std::size_t i) {
+        if (cuts[i].value == value_[cuts[i].corner]) visit(cuts[i]);
+      });
+    };
+    for_each_that_holds([&](const Cut& cut) { SharedValue(source_[cut.corner]).store(HUGE_VAL); });
+    for_each_that_holds([&](const Cut& cut) {
+      SharedValue(source_[cut.corner]).lower_to(cut.source);
+      mark(cut.corner);
+      for (const std::uint32_t c : dependents_[cut.corner]) mark(c);
+    });
+  }
+
+  /// A leaf sees its own cuts, behind those that there are.
+  void collect_cuts(std::uint32_t leaf, bool gently, std::vector<Cut>& cuts) const {
+    const std::size_t first = cuts.size();
+    const auto now = [&](std::uint32_t corner) {
+      for (std::size_t i = cuts.size(); i-- > first;)
+        if (cuts[i].corner == corner) return cuts[i].value;
+      return value_[corner];
+    };
+    std::array<double, 8> h = values_of(leaf);
+    for (int c = 0; c < 8; ++c) {
+      if (squared_slope(h, c) <= tolerated(leaf)) continue;
+      cut(leaf, c, level_of_cut(h, c, bound_of(leaf)), h, now, gently, cuts);
+      h = values_of(leaf, now);
+    }
   }
 
   /// The level at which (*) holds with equality once the values above it are cut off there.
@@ -240,7 +366,9 @@ class Grader {
     return sorted[0];
   }
 
-  void cut(std::uint32_t leaf, int c, double level, int round, const std::array<double, 8>& h) {
+  template <class Now>
+  void cut(std::uint32_t leaf, int c, double level, const std::array<double, 8>& h, const Now& now, bool gently,
+           std::vector<Cut>& cuts) const {
     int lowest = c;
     for (const int k : {c ^ 1, c ^ 2, c ^ 4})
       if (h[k] < h[lowest]) lowest = k;
@@ -249,16 +377,16 @@ class Grader {
       if (h[k] <= level) continue;
       const std::uint32_t corner = corners_.of_leaf[leaf][k];
       if (!corners_.hangs(corner)) {
-        lower(corner, level, source);
+        cuts.push_back({corner, level, source});
         continue;
       }
       // The shares above the level give way in proportion to what they are above it.
       double above = 0;
-      for (const auto& s : corners_.shares_of(corner)) above += s.weight * std::max(0.0, value_[s.corner] - level);
-      const double part = round > kGentleRounds ? 1.0 : std::min(1.0, (at(corner) - level) / above);
+      for (const auto& s : corners_.shares_of(corner)) above += s.weight * std::max(0.0, now(s.corner) - level);
+      const double part = gently ? std::min(1.0, (at_corner(corner, now) - level) / above) : 1.0;
       for (const auto& s : corners_.shares_of(corner)) {
-        if (value_[s.corner] <= level) continue;
-        lower(s.corner, value_[s.corner] - part * (value_[s.corner] - level), source);
+        const double value = now(s.corner);
+        if (value > level) cuts.push_back({s.corner, value - part * (value - level), source});
       }
     }
   }
@@ -275,7 +403,7 @@ class Grader {
     const double steepest = std::max(1.0, *std::max_element(steepness.begin(), steepness.end()));
     if (steepest == 1) return;
     const double least = *std::min_element(value_.begin(), value_.end()), by = 1 / std::sqrt(steepest);
-    for (double& v : value_) v = least + (v - least) * by;
+    parallel_for(value_.size(), [&](std::size_t c) { value_[c] = least + (value_[c] - least) * by; });
   }
 
   const Octree& tree_;
@@ -285,8 +413,9 @@ class Grader {
   std::vector<double> source_;               ///< likewise: what the source asked for that limits it
   std::vector<std::uint8_t> plain_, dirty_;  ///< per leaf
   std::vector<std::uint32_t> order_;
-  Groups<> leaves_;      ///< per corner, as 8 * leaf + which of its corners
-  Groups<> dependents_;  ///< per free corner: the hanging corners that it is part of
+  std::vector<std::size_t> groups_;  ///< of the order: where each ends
+  Groups<> leaves_;                  ///< per corner, as 8 * leaf + which of its corners
+  Groups<> dependents_;              ///< per free corner: the hanging corners that it is part of
 };
 
 }  // namespace

@@ -78,8 +78,11 @@ class Numbering {
   }
 
   static std::uint64_t code(Units p) { return (std::uint64_t{p[0]} << 21 | p[1]) << 21 | p[2]; }
-  /// The bits behind those by which the tables themselves tell codes apart.
-  std::size_t table_of(std::uint64_t code) const { return (FlatKeys<std::uint64_t>::hash(code) >> 8) % tables_.size(); }
+  /// Hashed twice: corners of large leaves differ in few bits, and the upper bits of one hash are the tables' own.
+  std::size_t table_of(std::uint64_t code) const {
+    const std::uint64_t once = FlatKeys<std::uint64_t>::hash(code);
+    return (FlatKeys<std::uint64_t>::hash(once ^ once >> 32) >> 32) % tables_.size();
+  }
 
   const Octree& tree_;
   std::vector<FlatMap<std::uint64_t, std::uint32_t>> tables_;  ///< from codes to the first slot

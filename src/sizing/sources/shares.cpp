@@ -2,6 +2,7 @@
 
 #include <octafront/surface_mesh.h>
 
+#include "base/core/parallel.h"
 #include "base/geometry/measures.h"
 
 #include <algorithm>
@@ -81,21 +82,29 @@ std::vector<double> SourceShares::part_of_each(const SurfaceMesh& surface, const
     const Vec3 a = surface.points[i], b = surface.points[j], c = surface.points[k];
     return PlaceOnSurface{centroid(a, b, c), unit_normal(a, b, c), static_cast<std::uint32_t>(f)};
   };
-  for (std::size_t f = 0; f < face.size(); ++f) least_at(f, place_of(f));
-  for (const AtPlace& source : places_)
-    if (source.at.batched) source.at.batched->fetch();
-  std::vector<double> part(names_.size() + 2);
-  for (std::size_t f = 0; f < face.size(); ++f) {
+  const auto by_whom = [&](std::size_t f) {
     const PlaceOnSurface place = place_of(f);
     const auto [asked, source] = least_at(f, place);
-    const auto& [i, j, k] = surface.triangles[f];
     const double came_out = field.at(place.p) / factor;
     // Numbers of elements scale all sizes: then only who asks for the least is known.
     const bool is_lower = !options.elements && came_out < kNearby * asked;
-    const std::size_t by = !is_lower                                  ? source
-                           : is_by_region(options, place.p, came_out) ? names_.size() + 1
-                                                                      : names_.size();
-    part[by] += triangle_area(surface.points[i], surface.points[j], surface.points[k]);
+    if (!is_lower) return std::size_t{source};
+    return names_.size() + is_by_region(options, place.p, came_out);
+  };
+  std::vector<std::uint16_t> by(face.size());
+  const auto ask = [&](std::size_t f) { by[f] = static_cast<std::uint16_t>(by_whom(f)); };
+  if (std::ranges::any_of(places_, [](const AtPlace& s) { return s.at.batched != nullptr; })) {
+    for (std::size_t f = 0; f < face.size(); ++f) least_at(f, place_of(f));
+    for (const AtPlace& source : places_)
+      if (source.at.batched) source.at.batched->fetch();
+    for (std::size_t f = 0; f < face.size(); ++f) ask(f);
+  } else {
+    parallel_for(face.size(), ask);
+  }
+  std::vector<double> part(names_.size() + 2);
+  for (std::size_t f = 0; f < face.size(); ++f) {
+    const auto& [i, j, k] = surface.triangles[f];
+    part[by[f]] += triangle_area(surface.points[i], surface.points[j], surface.points[k]);
   }
   const double whole = area(surface);
   for (double& p : part) p /= whole;

@@ -31,6 +31,8 @@ constexpr int kMostPlacings = 3;
 constexpr double kLeastFactorOfCurve = 0.9;
 /// A triangle is sampled in this many rows at most.
 constexpr int kMostParts = 64;
+/// Points of a wave, and those of it that one thread takes at a time.
+constexpr std::size_t kMostOfWave = 8192, kPointsAtOnce = 16;
 constexpr double kSixtyDegrees = std::numbers::pi / 3;
 
 /// What the grid knows of a point: on which sheet it lies.
@@ -60,7 +62,11 @@ class Front {
 
   FrontPoints run(const std::vector<Curve>& curves, const RunContext& context) {
     for (const Curve& c : curves) add_curve(c);
-    for (std::size_t c = 0; c < curves.size(); ++c) place_apexes(curves[c], c);
+    for (std::size_t c = 0; c < curves.size(); ++c) {
+      Places places;
+      place_apexes(curves[c], c, places);
+      for (const FrontPoint& p : places.points) take(p);
+    }
     std::vector<std::uint8_t> reached(parts_, 0);
     for (const FrontPoint& p : result_.points) reached[part_[p.face]] = 1;
     advance(context);
@@ -83,6 +89,12 @@ class Front {
     std::uint32_t id;
 
     double angle() const { return elementary::atan2(y, x); }
+  };
+  /// What one thread works with, and the places that it finds, in their order.
+  struct Places {
+    std::vector<FrontPoint> points;
+    std::vector<Neighbour> neighbours;
+    std::vector<HalfEdge> fan;
   };
   /// Whether less than 90 degrees lie between a and b, which follows it or is the first after the last.
   static bool is_acute(const Neighbour& a, const Neighbour& b) {
@@ -113,7 +125,7 @@ class Front {
     result_.curve_points.push_back(std::move(ids));
   }
 
-  void place_apexes(const Curve& curve, std::size_t index) {
+  void place_apexes(const Curve& curve, std::size_t index, Places& places) const {
     const HalfEdgeMesh& mesh = input_.mesh;
     for (std::size_t i = 0; i < curve.middles.size(); ++i) {
       const CurvePoint& middle = curve.middles[i];
@@ -128,26 +140,30 @@ class Front {
         const std::uint32_t parent = result_.curve_points[index][i];
         SurfacePoint x;
         if (walk(input_, {middle.p, side / 3}, normalized(inward), n, height, x) == WalkEnd::kArrived) {
-          consider(x, parent);
+          leave_at(x, parent, places);
         }
       }
     }
   }
 
-  /// Takes the place if it is free.
-  void consider(SurfacePoint x, std::uint32_t parent) {
-    ++result_.candidates;
+  void leave_at(SurfacePoint x, std::uint32_t parent, Places& places) const {
     FrontPoint point;
     point.p = x.p;
     point.face = x.face;
     point.normal = input_.normal_at(x.face, x.p);
     point.h = size_at(x.p);
     point.parent = parent;
+    places.points.push_back(point);
+  }
+
+  /// Takes the place if it is free.
+  void take(const FrontPoint& point) {
+    ++result_.candidates;
     bool is_free = true;
-    grid_.for_each_near(x.p, point.h, kSpacing, [&](const Grid::Entry& other) {
+    grid_.for_each_near(point.p, point.h, kSpacing, [&](const Grid::Entry& other) {
       if (!is_free) return;
       const double near = kSpacing * 0.5 * (point.h + other.size);
-      if (squared_length(other.p - x.p) < near * near && same_sheet(point, other)) is_free = false;
+      if (squared_length(other.p - point.p) < near * near && same_sheet(point, other)) is_free = false;
     });
     if (is_free) add(point);
   }
@@ -169,15 +185,28 @@ class Front {
     add(point);
   }
 
+  /// In waves: all points that are new look for places around them, seeing none of each other's, and these are taken in
+  /// the order of the points.
   void advance(const RunContext& context) {
-    for (; next_ < result_.points.size(); ++next_) {
-      if (next_ % 1024 == 0) context.check();
-      if (result_.points[next_].on_feature) {
-        fill_sectors(next_);
-      } else {
-        fill_gaps(next_);
-      }
+    while (next_ < result_.points.size()) {
+      context.check();
+      const std::uint32_t begin = next_;
+      next_ = static_cast<std::uint32_t>(std::min(result_.points.size(), begin + kMostOfWave));
+      const std::vector<FrontPoint> found = parallel_collect<FrontPoint>(
+          next_ - begin, kPointsAtOnce, [&](std::size_t first, std::size_t last, std::vector<FrontPoint>& out) {
+            Places places;
+            for (auto id = static_cast<std::uint32_t>(begin + first); id < begin + last; ++id) look_around(id, places);
+            out = std::move(places.points);
+          });
+      for (const FrontPoint& point : found) take(point);
     }
+  }
+
+  void look_around(std::uint32_t id, Places& places) const {
+    if (result_.points[id].on_feature)
+      fill_sectors(id, places);
+    else
+      fill_gaps(id, places);
   }
 
   /// The wanted length of an edge from `point` in a direction.
@@ -187,51 +216,52 @@ class Front {
   }
 
   /// Around a point inside a patch: new points in every gap between the directions to its neighbours.
-  void fill_gaps(std::uint32_t id) {
+  void fill_gaps(std::uint32_t id, Places& places) const {
     const FrontPoint point = result_.points[id];
     const Vec3 n = point.normal;
     const Vec3 axis = std::abs(n.x) < 0.6 ? Vec3{1, 0, 0} : Vec3{0, 1, 0};
     Vec3 u = normalized(cross(axis, n)), v = cross(n, u);
-    find_neighbours(id, point, u, v);
-    if (neighbours_.empty()) neighbours_.push_back({0, 1, 0, kNone}), leave(id, point, u, v, 0);
-    const std::size_t count = neighbours_.size();
+    std::vector<Neighbour>& neighbours = places.neighbours;
+    find_neighbours(id, point, u, v, neighbours);
+    if (neighbours.empty()) neighbours.push_back({0, 1, 0, kNone}), leave(id, point, u, v, 0, places);
+    const std::size_t count = neighbours.size();
     for (std::size_t i = 0; i < count; ++i) {
-      const Neighbour &a = neighbours_[i], &b = neighbours_[(i + 1) % count];
+      const Neighbour &a = neighbours[i], &b = neighbours[(i + 1) % count];
       if (is_acute(a, b)) continue;  // nearly always: no need of angles
       const double from = a.angle(), gap = b.angle() + (i + 1 < count ? 0 : 2 * std::numbers::pi) - from;
       const int parts = static_cast<int>(std::lround(gap / kSixtyDegrees));
-      for (int k = 1; k < parts; ++k) leave(id, point, u, v, from + gap * k / parts);
+      for (int k = 1; k < parts; ++k) leave(id, point, u, v, from + gap * k / parts, places);
     }
   }
 
   /// Of the same sheet, by angle.
-  void find_neighbours(std::uint32_t id, const FrontPoint& point, Vec3 u, Vec3 v) {
-    neighbours_.clear();
+  void find_neighbours(std::uint32_t id, const FrontPoint& point, Vec3 u, Vec3 v, std::vector<Neighbour>& found) const {
+    found.clear();
     grid_.for_each_near(point.p, point.h, kReachOfFront, [&](const Grid::Entry& other) {
       if (other.id == id) return;
       const double reach = kReachOfFront * 0.5 * (point.h + other.size);
       const Vec3 d = other.p - point.p;
       if (squared_length(d) > reach * reach || !same_sheet(point, other)) return;
       const double x = dot(d, u), y = dot(d, v);
-      neighbours_.push_back({turn_of(x, y), x, y, other.id});
+      found.push_back({turn_of(x, y), x, y, other.id});
     });
-    std::sort(neighbours_.begin(), neighbours_.end(),
+    std::sort(found.begin(), found.end(),
               [](const Neighbour& a, const Neighbour& b) { return a.turn != b.turn ? a.turn < b.turn : a.id < b.id; });
   }
 
-  void leave(std::uint32_t id, const FrontPoint& point, Vec3 u, Vec3 v, double angle) {
+  void leave(std::uint32_t id, const FrontPoint& point, Vec3 u, Vec3 v, double angle, Places& places) const {
     const Vec3 d = u * elementary::cos(angle) + v * elementary::sin(angle);
     SurfacePoint x;
     if (walk(input_, {point.p, point.face}, d, point.normal, reach_towards(point, d), x) == WalkEnd::kArrived) {
-      consider(x, id);
+      leave_at(x, id, places);
     }
   }
 
   /// Around a point on a curve: each sector between feature edges by itself, divided evenly near 60 degrees.
-  void fill_sectors(std::uint32_t id) {
+  void fill_sectors(std::uint32_t id, Places& places) const {
     const FrontPoint point = result_.points[id];
     if (point.vertex != kNone) {
-      fill_vertex_sectors(id, point);
+      fill_vertex_sectors(id, point, places);
       return;
     }
     const HalfEdgeMesh& mesh = input_.mesh;
@@ -242,7 +272,8 @@ class Front {
       for (int k = 1; k < 3; ++k) {
         const Vec3 d = u * elementary::cos(k * kSixtyDegrees) + v * elementary::sin(k * kSixtyDegrees);
         SurfacePoint x;
-        if (walk(input_, {point.p, side / 3}, d, n, reach_towards(point, d), x) == WalkEnd::kArrived) consider(x, id);
+        if (walk(input_, {point.p, side / 3}, d, n, reach_towards(point, d), x) == WalkEnd::kArrived)
+          leave_at(x, id, places);
       }
     }
   }
@@ -254,36 +285,36 @@ class Front {
     return elementary::atan2(length(cross(u, v)), dot(u, v));
   }
 
-  void fill_vertex_sectors(std::uint32_t id, const FrontPoint& point) {
+  void fill_vertex_sectors(std::uint32_t id, const FrontPoint& point, Places& places) const {
     const HalfEdgeMesh& mesh = input_.mesh;
     mesh.for_each_outgoing(point.vertex, [&](HalfEdge first) {
       if (!mesh.is_feature[first] || input_.is_back(first / 3)) return;
-      fan_.clear();
+      places.fan.clear();
       double total = 0;
       HalfEdge h = first;
       do {
-        fan_.push_back(h);
+        places.fan.push_back(h);
         total += angle_at(h);
         h = mesh.rotated(h);
       } while (!mesh.is_feature[h]);
       const int parts = static_cast<int>(std::lround(total / kSixtyDegrees));
-      for (int k = 1; k < parts; ++k) leave_vertex(id, point, total * k / parts);
+      for (int k = 1; k < parts; ++k) leave_vertex(id, point, total * k / parts, places);
     });
   }
 
   /// At `angle` from the start of the flattened fan.
-  void leave_vertex(std::uint32_t id, const FrontPoint& point, double angle) {
+  void leave_vertex(std::uint32_t id, const FrontPoint& point, double angle, Places& places) const {
     const HalfEdgeMesh& mesh = input_.mesh;
-    for (const HalfEdge corner : fan_) {
+    for (const HalfEdge corner : places.fan) {
       const double here = angle_at(corner);
-      if (angle > here && corner != fan_.back()) {
+      if (angle > here && corner != places.fan.back()) {
         angle -= here;
         continue;
       }
       const Vec3 u = normalized(mesh.points[mesh.end(corner)] - point.p), v = cross(input_.face_normal[corner / 3], u);
       const Vec3 d = u * elementary::cos(angle) + v * elementary::sin(angle);
       SurfacePoint x;
-      if (walk_from_vertex(input_, corner, d, reach_towards(point, d), x) == WalkEnd::kArrived) consider(x, id);
+      if (walk_from_vertex(input_, corner, d, reach_towards(point, d), x) == WalkEnd::kArrived) leave_at(x, id, places);
       return;
     }
   }
@@ -296,8 +327,6 @@ class Front {
   Grid grid_;
   FrontPoints result_;
   std::map<VertexIndex, std::uint32_t> of_vertex_;
-  std::vector<Neighbour> neighbours_;
-  std::vector<HalfEdge> fan_;
   std::uint32_t next_ = 0;
 };
 

@@ -1,0 +1,91 @@
+#!/usr/bin/env python3
+"""What is serial in each stage, and what that predicts for 2, 16 and 64 threads -> docs/measured/threads.md.
+
+    bench/threads.py BUILD [--model FILE] [--elements 1e6,4e6] [--runs 3] [--page]
+
+One thread does all, and every task of parallel.h is timed (src/base/core/forecast.h), so any machine will do. Of several
+runs the one of least time counts.
+"""
+import argparse
+import json
+import os
+import pathlib
+import subprocess
+import tempfile
+
+from origin import ROOT, written_by
+
+STAGES = ["repair", "detail", "features", "size field", "surface front", "volume front", "improve", "check"]
+REST = "reading, quality, hash, writing"
+THREADS = (2, 16, 64)
+KEYS = ("seconds", "serial seconds", "regions", *(f"seconds with {n} threads" for n in THREADS))
+
+
+def forecast_of(counters):
+    return {key: counters.get(f"forecast: {key}", 0) for key in KEYS}
+
+
+def run(octafront, model, elements):
+    """The forecast of each stage, of the rest, and of the process."""
+    with tempfile.TemporaryDirectory() as folder:
+        report = pathlib.Path(folder, "report.json")
+        done = subprocess.run([octafront, "mesh", model, "-o", pathlib.Path(folder, "mesh.vtu"), "--elements", f"{elements:.0f}",
+                               "--threads", "1", "--json", report, "-q"], check=True, capture_output=True, text=True,
+                              env={**os.environ, "OCTAFRONT_FORECAST": "16"})
+        told = json.loads(report.read_text())
+    whole = json.loads(done.stderr.splitlines()[-1])
+    stages = {}
+    for stage in told["stages"]:  # earlier tries for the number of elements stand by themselves, and belong to their stage
+        name = next((s for s in STAGES if stage["name"].startswith(s)), stage["name"])
+        of_stage = forecast_of(stage["counters"])
+        stages[name] = {key: stages.get(name, {}).get(key, 0) + value for key, value in of_stage.items()}
+    stages[REST] = {key: whole[key] - sum(s[key] for s in stages.values()) for key in KEYS}
+    return {"tets": told["tets"], "hash": told["hash"], "stages": stages, "whole": whole}
+
+
+def row(name, of_stage, whole):
+    seconds = of_stage["seconds"]
+    speedups = (f"{seconds / of_stage[f'seconds with {n} threads']:.2f}" for n in THREADS)
+    return (f"| {name} | {seconds:.2f} | {of_stage['serial seconds']:.3f} | {100 * of_stage['serial seconds'] / seconds:.1f} | "
+            f"{100 * of_stage['serial seconds'] / whole['seconds']:.1f} | {of_stage['regions']:,.0f} | {' | '.join(speedups)} | "
+            f"{of_stage[f'seconds with {THREADS[-1]} threads']:.3f} |")
+
+
+def rows(told):
+    whole = told["whole"]
+    yield (f"| stage | CPU s | serial s | of the stage, % | of the process, % | regions | times as fast: 2 | 16 | 64 threads | "
+           f"s with {THREADS[-1]} |")
+    yield "| --- |" + " --: |" * 9
+    for name, of_stage in told["stages"].items():
+        if of_stage["seconds"] > 0.001 * whole["seconds"]:
+            yield row(name, of_stage, whole)
+    yield row("**process**", whole, whole)
+
+
+def page(told, model, args):
+    text = (ROOT / "bench/threads.md.in").read_text()
+    tables = [line for one in told for line in (f"{one['tets']:,} elements:", "", *rows(one), "")]
+    said = f"{written_by(args)}: {model} from its file, `--elements`, on one thread."
+    return text.replace("@SAID@", said).replace("@TABLES@", "\n".join(tables).rstrip())
+
+
+def main():
+    parser = argparse.ArgumentParser(description=__doc__)
+    parser.add_argument("build", type=pathlib.Path)
+    parser.add_argument("--model", default="models/clean/bunny00.off")
+    parser.add_argument("--elements", default="1e6,4e6")
+    parser.add_argument("--runs", type=int, default=3)
+    parser.add_argument("--page", action="store_true")
+    a = parser.parse_args()
+    told = []
+    for elements in map(float, a.elements.split(",")):
+        runs = [run(a.build / "cli/octafront", a.model, elements) for _ in range(a.runs)]
+        assert len({r["hash"] for r in runs}) == 1, runs
+        told.append(min(runs, key=lambda r: r["whole"]["seconds"]))
+        print("\n".join([f"{told[-1]['tets']:,} elements, hash {told[-1]['hash']}", *rows(told[-1]), ""]), flush=True)
+    if a.page:
+        (ROOT / "docs/measured/threads.md").write_text(page(told, pathlib.Path(a.model).name, "bench/run.sh threads --page"))
+
+
+if __name__ == "__main__":
+    main()

@@ -1,0 +1,140 @@
+#include "base/core/forecast.h"
+
+#include <algorithm>
+#include <cstdio>
+#include <cstdlib>
+#include <functional>
+#include <queue>
+#include <string>
+#include <vector>
+
+#ifdef _WIN32
+#include "base/core/files_of_windows.h"
+#else
+#include <ctime>
+#endif
+
+namespace octafront {
+
+namespace {
+
+/// A region shorter than this gains nothing: to wake threads takes some microseconds.
+constexpr double kWorthwhile = 20e-6;
+
+/// What the calling thread has counted so far: in the task that it does, or in all.
+thread_local Forecast counted;
+
+/// What a clock's reading takes, the least of some.
+double reading() {
+  double least = 1;
+  for (int k = 0; k < 100; ++k) {
+    const double before = thread_cpu_seconds();
+    least = std::min(least, thread_cpu_seconds() - before);
+  }
+  return least;
+}
+
+/// Tasks in their order, each to the thread that is free first.
+double seconds_with(std::size_t threads, const std::vector<double>& tasks) {
+  std::priority_queue<double, std::vector<double>, std::greater<>> free_at;
+  double last = 0;
+  for (const double seconds : tasks) {
+    double start = 0;
+    if (free_at.size() == threads) start = free_at.top(), free_at.pop();
+    free_at.push(start + seconds);
+    last = std::max(last, start + seconds);
+  }
+  return last;
+}
+
+/// Of all that the thread did that ends the process, stages or not, as an object of JSON.
+void tell_of_process() {
+  const double whole = thread_cpu_seconds() - counted.counting, serial = whole - counted.parallel;
+  std::fprintf(stderr, "{\"seconds\": %.6f, \"serial seconds\": %.6f, \"regions\": %llu", whole, serial,
+               static_cast<unsigned long long>(counted.regions));
+  for (std::size_t k = 0; k < Forecast::kThreads.size(); ++k)
+    std::fprintf(stderr, ", \"seconds with %zu threads\": %.6f", Forecast::kThreads[k], serial + counted.with[k]);
+  std::fprintf(stderr, "}\n");
+}
+
+}  // namespace
+
+void Forecast::add(const Forecast& other) {
+  parallel += other.parallel, counting += other.counting, regions += other.regions;
+  for (std::size_t k = 0; k < with.size(); ++k) with[k] += other.with[k];
+}
+
+std::size_t forecast_threads() {
+  static const std::size_t threads = [] {
+    const char* const asked = std::getenv("OCTAFRONT_FORECAST");
+    const std::size_t number = asked == nullptr ? 0 : std::strtoul(asked, nullptr, 10);
+    if (number > 0) std::atexit(tell_of_process);
+    return number;
+  }();
+  return threads;
+}
+
+double thread_cpu_seconds() {
+#ifdef _WIN32
+  FILETIME ignored{}, system{}, user{};
+  GetThreadTimes(GetCurrentThread(), &ignored, &ignored, &system, &user);
+  const auto seconds = [](FILETIME t) { return 1e-7 * (0x1p32 * t.dwHighDateTime + t.dwLowDateTime); };
+  return seconds(user) + seconds(system);
+#else
+  timespec now{};
+  clock_gettime(CLOCK_THREAD_CPUTIME_ID, &now);
+  return static_cast<double>(now.tv_sec) + 1e-9 * static_cast<double>(now.tv_nsec);
+#endif
+}
+
+Forecast forecast_region(std::size_t tasks, FunctionRef<void(std::size_t)> task) {
+  static const double kReading = reading();
+  struct Outside {  // put back whatever a task throws
+    Forecast all = counted;
+    ~Outside() { counted = all; }
+  } outside;
+  const double start = thread_cpu_seconds();
+  Forecast region;
+  std::array<std::vector<double>, Forecast::kThreads.size()> seconds;
+  for (std::vector<double>& of_tasks : seconds) of_tasks.resize(tasks);
+  double before = thread_cpu_seconds();
+  for (std::size_t i = 0; i < tasks; ++i) {
+    counted = {};
+    task(i);
+    const double now = thread_cpu_seconds(), own = std::max(0.0, now - before - kReading - counted.counting);
+    before = now;
+    region.parallel += own;
+    region.counting += counted.counting, region.regions += counted.regions;
+    // Regions inside a task are done by all threads, too.
+    for (std::size_t k = 0; k < seconds.size(); ++k) seconds[k][i] = own - counted.parallel + counted.with[k];
+  }
+  for (std::size_t k = 0; k < seconds.size(); ++k)
+    region.with[k] = region.parallel < kWorthwhile
+                         ? region.parallel
+                         : std::max(seconds_with(Forecast::kThreads[k], seconds[k]),
+                                    region.parallel / static_cast<double>(Forecast::kThreads[k]));
+  ++region.regions;
+  region.counting = thread_cpu_seconds() - start - region.parallel;
+  outside.all.add(region);
+  return region;
+}
+
+StageForecast::StageForecast(StageReport& report) : report_(report) {
+  if (forecast_threads() == 0) return;
+  before_ = counted;
+  start_ = thread_cpu_seconds();
+}
+
+StageForecast::~StageForecast() {
+  if (forecast_threads() == 0) return;
+  const double counting = counted.counting - before_.counting;
+  const double whole = thread_cpu_seconds() - start_ - counting, parallel = counted.parallel - before_.parallel;
+  report_.count("forecast: seconds", whole);
+  report_.count("forecast: serial seconds", whole - parallel);
+  report_.count("forecast: regions", static_cast<double>(counted.regions - before_.regions));
+  for (std::size_t k = 0; k < Forecast::kThreads.size(); ++k)
+    report_.count("forecast: seconds with " + std::to_string(Forecast::kThreads[k]) + " threads",
+                  whole - parallel + counted.with[k] - before_.with[k]);
+}
+
+}  // namespace octafront
