@@ -90,18 +90,11 @@ Piece piece_of_share(const TetMesh& share, const Comm& comm) {
     division.part.push_back(ghost.part);
   }
   std::vector<GlobalId> face_ids;
-  std::vector<Triangle> faces = share.boundary;
-  faces.insert(faces.end(), share.interfaces.begin(), share.interfaces.end());
-  const std::vector<TetIndex> tet_of = tets_of_faces(near.tets, faces, near.points.size());
-  std::vector<GlobalId> outer, inner;
-  for (std::size_t f = 0; f < faces.size(); ++f) {
-    if (tet_of[f] == kNone) continue;
-    face_ids.push_back(f);
-    f < share.boundary.size() ? outer.push_back(f) : inner.push_back(f - share.boundary.size());
-  }
-  near.boundary = chosen(share.boundary, outer), near.patch = chosen(share.patch, outer);
-  near.source = chosen(share.source, outer);
-  near.interfaces = chosen(share.interfaces, inner), near.interface_patch = chosen(share.interface_patch, inner);
+  const std::vector<TetIndex> tet_of = tets_of_faces(near.tets, share.boundary, near.points.size());
+  for (std::size_t f = 0; f < share.boundary.size(); ++f)
+    if (tet_of[f] != kNone) face_ids.push_back(f);
+  near.boundary = chosen(share.boundary, face_ids), near.patch = chosen(share.patch, face_ids);
+  near.source = chosen(share.source, face_ids);
   const std::vector<GlobalId> edge_ids = edges_here(share, near.tets);
   near.curve_edges = chosen(share.curve_edges, edge_ids), near.curve = chosen(share.curve, edge_ids);
 
@@ -114,8 +107,7 @@ Piece piece_of_share(const TetMesh& share, const Comm& comm) {
 }
 
 WholeCounts counts_of_shares(const TetMesh& share, const Comm& comm) {
-  return {share.points.size(), count_tets(share, comm).all, share.boundary.size() + share.interfaces.size(),
-          share.curve_edges.size()};
+  return {share.points.size(), count_tets(share, comm).all, share.boundary.size(), share.curve_edges.size()};
 }
 
 }  // namespace octafront::io

@@ -373,10 +373,10 @@ TEST(FilesInParts, KeepProcessorsOfALargerDivision) {
   EXPECT_TRUE(fs::exists(folder / "processor3/constant/polyMesh/faces"));
 }
 
-/// A mesh with regions, patches, interfaces and curves, without sets.
+/// A mesh with regions, patches and curves.
 TetMesh mesh_of_shares() {
   TetMesh mesh = testing::rich_mesh(4);
-  mesh.sets.clear();
+  mesh.sets.clear(), mesh.interfaces.clear(), mesh.interface_patch.clear();
   return mesh;
 }
 
