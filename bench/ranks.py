@@ -25,7 +25,7 @@ if os.geteuid() == 0:
 def run(octafront, model, elements, ranks, folder):
     report = folder / "report.json"
     launch = [*LAUNCH, "-n", str(ranks)] if ranks > 1 else []
-    subprocess.run([*launch, octafront, "mesh", model, "-o", folder / "mesh.vtu", "--elements", str(elements), "--threads", "1",
+    subprocess.run([*launch, octafront, "mesh", model, "-o", folder / "mesh.pvtu", "--elements", str(elements), "--threads", "1",
                     "--json", report, "-q"], check=True, capture_output=True)
     return json.loads(report.read_text())
 
@@ -57,14 +57,22 @@ def rows_of_stages(told, ranks):
                f"{max(shared) / mean if mean else 1:.2f} | {mean:.2f} | {sum(talking) / len(talking):.2f} | {seconds:.2f} |")
 
 
+def rows_of_memory(told):
+    """MB of the first rank: the peak up to the end of each stage."""
+    for ranks in sorted(told):
+        peaks = [max(s["counters"].get("peak memory bytes so far", 0) for s in told[ranks]["stages"] if s["name"].startswith(name))
+                 for name in STAGES]
+        if ranks > 1:
+            yield f"| {ranks} | {' | '.join(f'{p / 1e6:.0f}' for p in peaks)} |"
+
+
 def seconds_alone(alone):
     """CPU seconds of one process: of all stages, and of what ranks share."""
-    counters = {key: value for stage in alone["stages"] for key, value in stage["counters"].items()}
-    return alone["cpu_seconds"], sum(counters[f"{what} CPU seconds"] for what in ("core", "advance", "pieces"))
+    return alone["cpu_seconds"], sum(seconds for (_, shared), seconds in parts_of(alone).items() if shared)
 
 
-# What ranks share of a stage, by the counters of its CPU seconds.
-SHARED = {"volume front": ("core", "advance"), "improve": ("pieces",)}
+# What ranks share of a stage, by the counters of its CPU seconds; None: all of it.
+SHARED = {"volume front": ("core", "advance"), "improve": ("pieces",), "check": None}
 # Assumed for the prediction: of a network of 10 Gbit/s.
 BYTES_PER_SECOND = 1e9
 
@@ -74,7 +82,8 @@ def parts_of(alone):
     parts = {}
     for stage in alone["stages"]:
         name = next((n for n in STAGES if stage["name"].startswith(n)), "rest")
-        shared = sum(stage["counters"].get(f"{what} CPU seconds", 0) for what in SHARED.get(name, ()))
+        of_stage = SHARED.get(name, ())
+        shared = stage["cpu_seconds"] if of_stage is None else sum(stage["counters"].get(f"{what} CPU seconds", 0) for what in of_stage)
         for kind, seconds in ((True, shared), (False, max(0, stage["cpu_seconds"] - shared))):
             parts[name, kind] = parts.get((name, kind), 0) + seconds
     return parts
@@ -132,8 +141,8 @@ def rows_of_prediction(model):
                f"{' | '.join(cells)} |")
 
 
-def prediction(told, larger, larger_ranks, by):
-    small, large, most = told[min(told)], larger, max(told)
+def prediction(told, larger, by):
+    small, large, larger_ranks, most = told[min(told)], larger[1], larger[by], max(told)
     model = Model(small, large, larger_ranks, told[most], most)
     million = large["tets"] / 1e6
     in_parts = [parts_of(t) for t in (small, large)]
@@ -158,31 +167,36 @@ def prediction(told, larger, larger_ranks, by):
             "([volume](volume-bench.md)).", "",
             "| elements | one core, s | of that every rank does, s | GB taken by each | 16 ranks | 64 ranks | 1,024 ranks |",
             "| --: | --: | --: | --: | --: | --: | --: |", *rows_of_prediction(model), "",
-            "So what is replicated decides, twice. In time: sizes, surface, check and what improvement does of the whole mesh are done by every rank, and its "
-            "bytes come to every rank; from 16 ranks on hardly anything is gained. In memory: what every rank holds has to fit on one machine. Numbers of elements "
+            "So what is on every rank decides, twice. In time: sizes, surface and the division into pieces are done by every rank, and vertices that moved come to "
+            "every rank. In memory: all vertices, the surface and the octree of sizes have to fit on one machine. Numbers of elements "
             "end at 536,870,912 today: the lower two rows are what it would take.", ""]
 
 
-def page(told, larger, larger_ranks, model, elements, args):
+HEAD_OF_RUNS = ("| ranks | elements | hash | peak memory of a rank, GB | B/element | MB taken by a rank | B/element | rounds of talk | s |\n"
+                "| --: | --: | --- | --: | --: | --: | --: | --: | --: |")
+
+
+def page(told, larger, model, elements, args):
     alone = told[min(told)]
     whole, shared = seconds_alone(alone)
     serial = 1 - shared / whole
     lines = ["# Ranks: one mesh by several processes", "",
              f"{written_by(args)}: {model}, {elements:,.0f} elements asked for, one thread a process, all on one machine, so "
              "wall times say only who waits: cores are fewer, and others may work beside. How it is used: [ranks](../use/ranks.md).", "",
-             "| ranks | elements | hash | peak memory of a rank, GB | B/element | MB taken by a rank | B/element | rounds of talk | s |",
-             "| --: | --: | --- | --: | --: | --: | --: | --: | --: |",
-             *(row_of_run(told[n], n) for n in sorted(told)), "",
+             HEAD_OF_RUNS, *(row_of_run(told[n], n) for n in sorted(told)), "",
+             *(["The same of more elements:", "", HEAD_OF_RUNS, *(row_of_run(larger[n], n) for n in sorted(larger)), "",
+                "Peak memory of the first rank up to the end of each stage of these, MB:", "",
+                f"| ranks | {' | '.join(STAGES)} |", "| --: |" + " --: |" * len(STAGES), *rows_of_memory(larger), ""] if larger else []),
              "Of each stage: bytes that a rank takes; the longest share over the mean one; the mean time in shared work and in talk, "
              "waiting included; the whole.", "",
              "| ranks | stage | MB taken | imbalance | s shared | s talk | s |", "| --: | --- | --: | --: | --: | --: | --: |",
              *(row for n in sorted(told) if n > 1 for row in rows_of_stages(told[n], n)), "",
-             f"Of the {whole:.1f} CPU seconds of a process alone, lattice, front and pieces of improvement, which ranks share, take "
+             f"Of the {whole:.1f} CPU seconds of a process alone, lattice, front, pieces of improvement and check, which ranks share, take "
              f"{shared:.1f}: {100 * serial:.0f} % are done by every rank. Without any cost of talk, that bounds what ranks gain (Amdahl):", "",
              "| ranks | times as fast, at most |", "| --: | --: |",
              *(f"| {p:,} | {1 / (serial + (1 - serial) / p):.2f} |" for p in (2, 4, 16, 64, 1024)), ""]
     if larger:
-        lines += prediction(told, larger, larger_ranks, RANKS_OF_LARGER)
+        lines += prediction(told, larger, RANKS_OF_LARGER)
     return "\n".join(lines)
 
 
@@ -200,13 +214,13 @@ def main():
         for ranks in map(int, a.ranks.split(",")):
             told[ranks] = run(a.build / "cli/octafront", a.model, a.elements, ranks, pathlib.Path(folder))
             print(row_of_run(told[ranks], ranks), flush=True)
-        larger = larger_ranks = None
-        if a.larger:
-            larger, larger_ranks = (run(a.build / "cli/octafront", a.model, a.larger, ranks, pathlib.Path(folder))
-                                    for ranks in (1, RANKS_OF_LARGER))
-            assert larger["hash"] == larger_ranks["hash"]
+        larger = {}
+        for ranks in told if a.larger else []:
+            larger[ranks] = run(a.build / "cli/octafront", a.model, a.larger, ranks, pathlib.Path(folder))
+            print(row_of_run(larger[ranks], ranks), flush=True)
+        assert len({t["hash"] for t in larger.values()}) < 2
     hashes = {t["hash"] for t in told.values()}
-    text = page(told, larger, larger_ranks, pathlib.Path(a.model).name, a.elements, "bench/run.sh ranks")
+    text = page(told, larger, pathlib.Path(a.model).name, a.elements, "bench/run.sh ranks")
     print(text)
     if a.page:
         (ROOT / "docs/measured/ranks.md").write_text(text)
