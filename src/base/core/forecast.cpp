@@ -22,7 +22,7 @@ namespace {
 constexpr double kWorthwhile = 20e-6;
 
 /// What the calling thread has counted so far: in the task that it does, or in all.
-thread_local Forecast counted;
+thread_local Forecast of_thread;
 
 /// What a clock's reading takes, the least of some.
 double reading() {
@@ -49,11 +49,11 @@ double seconds_with(std::size_t threads, const std::vector<double>& tasks) {
 
 /// Of all that the thread did that ends the process, stages or not, as an object of JSON.
 void tell_of_process() {
-  const double whole = thread_cpu_seconds() - counted.counting, serial = whole - counted.parallel;
+  const double whole = thread_cpu_seconds() - of_thread.counting, serial = whole - of_thread.parallel;
   std::fprintf(stderr, "{\"seconds\": %.6f, \"serial seconds\": %.6f, \"regions\": %llu", whole, serial,
-               static_cast<unsigned long long>(counted.regions));
+               static_cast<unsigned long long>(of_thread.regions));
   for (std::size_t k = 0; k < Forecast::kThreads.size(); ++k)
-    std::fprintf(stderr, ", \"seconds with %zu threads\": %.6f", Forecast::kThreads[k], serial + counted.with[k]);
+    std::fprintf(stderr, ", \"seconds with %zu threads\": %.6f", Forecast::kThreads[k], serial + of_thread.with[k]);
   std::fprintf(stderr, "}\n");
 }
 
@@ -90,8 +90,8 @@ double thread_cpu_seconds() {
 Forecast forecast_region(std::size_t tasks, FunctionRef<void(std::size_t)> task) {
   static const double kReading = reading();
   struct Outside {  // put back whatever a task throws
-    Forecast all = counted;
-    ~Outside() { counted = all; }
+    Forecast all = of_thread;
+    ~Outside() { of_thread = all; }
   } outside;
   const double start = thread_cpu_seconds();
   Forecast region;
@@ -99,14 +99,14 @@ Forecast forecast_region(std::size_t tasks, FunctionRef<void(std::size_t)> task)
   for (std::vector<double>& of_tasks : seconds) of_tasks.resize(tasks);
   double before = thread_cpu_seconds();
   for (std::size_t i = 0; i < tasks; ++i) {
-    counted = {};
+    of_thread = {};
     task(i);
-    const double now = thread_cpu_seconds(), own = std::max(0.0, now - before - kReading - counted.counting);
+    const double now = thread_cpu_seconds(), own = std::max(0.0, now - before - kReading - of_thread.counting);
     before = now;
     region.parallel += own;
-    region.counting += counted.counting, region.regions += counted.regions;
+    region.counting += of_thread.counting, region.regions += of_thread.regions;
     // Regions inside a task are done by all threads, too.
-    for (std::size_t k = 0; k < seconds.size(); ++k) seconds[k][i] = own - counted.parallel + counted.with[k];
+    for (std::size_t k = 0; k < seconds.size(); ++k) seconds[k][i] = own - of_thread.parallel + of_thread.with[k];
   }
   for (std::size_t k = 0; k < seconds.size(); ++k)
     region.with[k] = region.parallel < kWorthwhile
@@ -121,20 +121,20 @@ Forecast forecast_region(std::size_t tasks, FunctionRef<void(std::size_t)> task)
 
 StageForecast::StageForecast(StageReport& report) : report_(report) {
   if (forecast_threads() == 0) return;
-  before_ = counted;
+  before_ = of_thread;
   start_ = thread_cpu_seconds();
 }
 
 StageForecast::~StageForecast() {
   if (forecast_threads() == 0) return;
-  const double counting = counted.counting - before_.counting;
-  const double whole = thread_cpu_seconds() - start_ - counting, parallel = counted.parallel - before_.parallel;
+  const double counting = of_thread.counting - before_.counting;
+  const double whole = thread_cpu_seconds() - start_ - counting, parallel = of_thread.parallel - before_.parallel;
   report_.count("forecast: seconds", whole);
   report_.count("forecast: serial seconds", whole - parallel);
-  report_.count("forecast: regions", static_cast<double>(counted.regions - before_.regions));
+  report_.count("forecast: regions", static_cast<double>(of_thread.regions - before_.regions));
   for (std::size_t k = 0; k < Forecast::kThreads.size(); ++k)
     report_.count("forecast: seconds with " + std::to_string(Forecast::kThreads[k]) + " threads",
-                  whole - parallel + counted.with[k] - before_.with[k]);
+                  whole - parallel + of_thread.with[k] - before_.with[k]);
 }
 
 }  // namespace octafront
