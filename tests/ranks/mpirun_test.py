@@ -190,7 +190,7 @@ class Mpirun(unittest.TestCase):
 
     def test_no_memory_on_one_rank_is_one_message(self):
         limited = ["sh", "-c", 'ulimit -v $1; shift; exec "$@"', "sh", "500000"]
-        command = [OCTAFRONT, "mesh", BRACKET, "-o", self.out, "--elements", "3e6", "--threads", "1"]
+        command = [OCTAFRONT, "mesh", BRACKET, "-o", self.out, "--elements", "8e6", "--threads", "1"]
         done = self.launch(1, *command, ":", "-n", "1", *limited, *command)
         self.assertEqual(done.returncode, 6, done.stderr)
         self.assertEqual(len(re.findall(r"octafront: rank 1 of 2, in stage .*out of memory", done.stderr)), 1, done.stderr)
