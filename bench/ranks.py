@@ -158,7 +158,7 @@ def prediction(told, larger, by):
             *(f"| {name} | {both(name, False)} | {both(name, True)} |" for name in STAGES), "",
             f"Memory is {memory_of(small):.0f} and {memory_of(large):.0f} bytes an element, with {by} ranks {memory_of(larger_ranks):.0f} on each: so "
             f"{model.held_by_all:.0f} of them are on every rank, and {model.held_in_shares:.0f} are shared. A rank of {by} takes "
-            f"{bytes_taken(told[by]):.1f} and {bytes_taken(larger_ranks):.1f}, hashes are one: `{larger['hash']}`.", "",
+            f"{bytes_taken(told[by]):.1f} and {bytes_taken(larger_ranks):.1f}, hashes are one: `{large['hash']}`.", "",
             "The model: one core a rank; each figure of the table grows on as between its two sizes; what is shared is divided by the ranks, of whom the "
             f"slowest has {model.imbalance:.2f} times the mean, as with {most} of them; each takes {model.bytes:.0f} bytes an element times (1 - 1/ranks), by an "
             "assumed 1 GB/s; memory is what is on every rank at the larger size, and the share of the rest, bytes an element. Rounds of talk cost nothing beside that: there are "
