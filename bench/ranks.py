@@ -185,7 +185,7 @@ def page(told, larger, model, elements, args):
              "wall times say only who waits: cores are fewer, and others may work beside. How it is used: [ranks](../use/ranks.md).", "",
              HEAD_OF_RUNS, *(row_of_run(told[n], n) for n in sorted(told)), "",
              *(["The same of more elements:", "", HEAD_OF_RUNS, *(row_of_run(larger[n], n) for n in sorted(larger)), "",
-                "Peak memory of the first rank up to the end of each stage of these, MB:", "",
+                "Peak memory of the first rank up to the end of each stage, MB:", "",
                 f"| ranks | {' | '.join(STAGES)} |", "| --: |" + " --: |" * len(STAGES), *rows_of_memory(larger), ""] if larger else []),
              "Of each stage: bytes that a rank takes; the longest share over the mean one; the mean time in shared work and in talk, "
              "waiting included; the whole.", "",
