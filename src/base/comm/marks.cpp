@@ -1,8 +1,8 @@
 #include "base/comm/marks.h"
 
 #include "base/comm/packing.h"
+#include "base/comm/shares.h"
 
-#include <algorithm>
 #include <cstddef>
 #include <span>
 #include <utility>
@@ -10,11 +10,6 @@
 namespace octafront {
 
 namespace {
-
-/// Where the range of a rank begins.
-std::size_t begin_of(std::size_t rank, std::size_t ranks, std::size_t marks) {
-  return marks / ranks * rank + std::min(rank, marks % ranks);
-}
 
 /// Numbers of those that are marked, or a bit for each, whichever is less.
 void pack_marks(std::span<const std::uint8_t> marks, Packer& to) {
@@ -49,7 +44,7 @@ template <class Fold>
 std::vector<std::uint8_t> folded(const Comm& comm, const std::vector<std::uint8_t>& marks, std::string_view what,
                                  const Fold& fold) {
   const auto ranks = static_cast<std::size_t>(comm.size());
-  const auto begin = [&](std::size_t rank) { return begin_of(rank, ranks, marks.size()); };
+  const auto begin = [&](std::size_t rank) { return begin_of_stretch(rank, ranks, marks.size()); };
   std::vector<Bytes> out(ranks);
   comm.attempt(what, Comm::Telling::kNamesRank, [&] {
     for (std::size_t r = 0; r < ranks; ++r) {

@@ -3,6 +3,7 @@
 #include "base/comm/packing.h"
 #include "base/core/parallel.h"
 
+#include <algorithm>
 #include <cstddef>
 #include <cstdint>
 #include <span>
@@ -10,6 +11,11 @@
 #include <vector>
 
 namespace octafront {
+
+/// Where the stretch of a rank begins, of things that are shared evenly.
+inline std::size_t begin_of_stretch(std::size_t rank, std::size_t ranks, std::size_t count) {
+  return count / ranks * rank + std::min(rank, count % ranks);
+}
 
 /// Which of many jobs in a row each rank does: stretches of about the same work. Who does a job changes nothing in the
 /// result, for jobs are pure and results are joined in the order of jobs.
@@ -20,6 +26,9 @@ class Shares {
 
   std::size_t begin(int rank) const { return first_[static_cast<std::size_t>(rank)]; }
   std::size_t end(int rank) const { return first_[static_cast<std::size_t>(rank) + 1]; }
+  int rank_of(std::size_t job) const {
+    return static_cast<int>(std::ranges::upper_bound(first_, job) - first_.begin()) - 1;
+  }
 
  private:
   std::vector<std::size_t> first_;  ///< jobs, per rank; one more

@@ -2,6 +2,8 @@
 
 #include "base/comm/in_parts.h"
 #include "base/comm/marks.h"
+#include "base/comm/shares.h"
+#include "base/mesh/mesh_share.h"
 #include "base/mesh/renumber.h"
 
 #include <algorithm>
@@ -59,8 +61,7 @@ template <class Item>
 void keep_stretch(std::vector<Item>& items, const Comm& comm) {
   const auto ranks = static_cast<std::size_t>(comm.size());
   const auto begin = [&](std::size_t rank) {
-    return items.begin() +
-           static_cast<std::ptrdiff_t>(items.size() / ranks * rank + std::min(rank, items.size() % ranks));
+    return items.begin() + static_cast<std::ptrdiff_t>(begin_of_stretch(rank, ranks, items.size()));
   };
   const auto rank = static_cast<std::size_t>(comm.rank());
   items = std::vector<Item>(begin(rank), begin(rank + 1));
@@ -93,10 +94,8 @@ void gather_tets_at_first(TetMesh& mesh, const Comm& comm) {
 
 void drop_unused_points(TetMesh& mesh, std::size_t kept, const Comm& comm) {
   if (comm.alone()) return drop_unused_points(mesh, kept);
-  std::vector<std::uint8_t> is_used(mesh.points.size(), 0);
+  std::vector<std::uint8_t> is_used = vertices_in_use(mesh);
   std::fill_n(is_used.begin(), kept, std::uint8_t{1});
-  for (const Tet& t : mesh.tets)
-    for (const VertexIndex v : t) is_used[v] = 1;
   join_marks(comm, is_used, "vertices in use");
   std::vector<VertexIndex> number(mesh.points.size(), kNone);
   for (std::size_t v = 0; v < number.size(); ++v)

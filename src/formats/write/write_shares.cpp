@@ -14,21 +14,6 @@
 
 namespace octafront {
 
-namespace {
-
-/// The first rank's, for all.
-std::string from_first(const Comm& comm, const std::string& text) {
-  Packer to;
-  to.add_text(text);
-  std::string first;
-  comm.gather(to.bytes(), "output").for_each([&](int rank, std::span<const std::byte> bytes) {
-    if (rank == 0) first = Unpacker(bytes).take_text();
-  });
-  return first;
-}
-
-}  // namespace
-
 std::vector<std::string> write_shares(const std::string& file, const TetMesh& share, const RunContext& context) {
   const Comm comm(context.ranks);
   const ThreadLimit limit(context.threads);
@@ -37,19 +22,21 @@ std::vector<std::string> write_shares(const std::string& file, const TetMesh& sh
   const io::MeshParts parts(share);
   // The first rank makes the folder, and names everything in the end.
   std::optional<io::MeshOutput> out;
-  std::string folder;
+  std::vector<char> folder;
   together([&] {
     if (!is_first) return;
     io::check_pvtu_target(file, static_cast<std::uint32_t>(comm.size()));
     out.emplace(file, context);
-    folder = io::begin_pvtu(*out).string();
+    const std::string begun = io::begin_pvtu(*out).string();
+    folder.assign(begun.begin(), begun.end());
   });
-  folder = from_first(comm, folder);
+  folder = gathered_lists(comm, folder, "output");  // the others have none
   const io::VtkWhole whole{io::VtkCells::Shown::of(parts), io::VtkCells::names_of(parts),
                            io::counts_of_shares(share, comm)};
   const io::Piece piece =
       comm.attempt("output", Comm::Telling::kNamesRank, [&] { return io::piece_of_share(share, comm); });
-  together([&] { io::write_pvtu_piece(folder, file, piece, whole, context, false); });
+  together(
+      [&] { io::write_pvtu_piece(std::string(folder.begin(), folder.end()), file, piece, whole, context, false); });
   together([&] {
     if (!is_first) return;
     io::end_pvtu(*out, parts, {}, whole, piece.parts);

@@ -85,15 +85,13 @@ struct MeshOfPieces::Change {
 
   /// Gives new vertices their numbers.
   void number(VertexIndex first_new) {
-    const auto renumber = [&](auto& rows) {
-      for (auto& row : rows)
-        for (VertexIndex& v : row)
-          if (v != kNone && v >= kNewVertex) v = first_new + (v - kNewVertex);
-    };
-    renumber(made), renumber(edges_made);
-    for (EditMesh::ChangedTriangle& t : boundary)
-      for (VertexIndex& v : t.corners)
+    const auto renumber = [&](auto& row) {
+      for (VertexIndex& v : row)
         if (v != kNone && v >= kNewVertex) v = first_new + (v - kNewVertex);
+    };
+    std::ranges::for_each(made, renumber);
+    std::ranges::for_each(edges_made, renumber);
+    for (EditMesh::ChangedTriangle& t : boundary) renumber(t.corners);
   }
 };
 
@@ -241,18 +239,16 @@ Shares MeshOfPieces::shared_cells(const Cells& cells, std::span<const TetIndex> 
 /// Elements of cells go to the ranks that work on these.
 void MeshOfPieces::deal(const Cells& cells, const Shares& shares, std::vector<TetIndex>& tets) {
   if (comm_.alone()) return;
-  std::vector<int> rank_of(cells.count);
-  for (int r = 0; r < comm_.size(); ++r)
-    for (std::size_t c = shares.begin(r); c < shares.end(r); ++c) rank_of[c] = r;
   std::vector<std::vector<Traveller>> out(static_cast<std::size_t>(comm_.size()));
   std::vector<TetIndex> stay, free;
   for (const TetIndex t : tets) {
     const std::uint32_t cell = cells.holding(tets_[t]);
-    if (cell == kNoOwner || rank_of[cell] == comm_.rank()) {
+    const int rank = cell == kNoOwner ? comm_.rank() : shares.rank_of(cell);
+    if (rank == comm_.rank()) {
       stay.push_back(t);
       continue;
     }
-    out[static_cast<std::size_t>(rank_of[cell])].push_back(traveller(t));
+    out[static_cast<std::size_t>(rank)].push_back(traveller(t));
     tets_[t] = {kNone, kNone, kNone, kNone};
     free.push_back(t);
   }
@@ -552,15 +548,14 @@ void MeshOfPieces::sort_among_ranks(std::size_t vertices) {
     if (is_there(t)) ++count[stretch_of(t)];
   comm_.sum(count, "elements in order");
   const Shares shares(std::vector<std::uint64_t>(count.begin(), count.end()), comm_.size());
-  std::vector<std::size_t> rank_of(kStretches);
-  for (int r = 0; r < comm_.size(); ++r)
-    for (std::size_t s = shares.begin(r); s < shares.end(r); ++s) rank_of[s] = static_cast<std::size_t>(r);
   std::vector<std::vector<Traveller>> out(static_cast<std::size_t>(comm_.size()));
   std::vector<TetIndex> free;
   for (TetIndex t = 0; t < tets_.size(); ++t) {
-    const std::size_t rank = is_there(tets_[t]) ? rank_of[stretch_of(tets_[t])] : out.size();
-    if (rank == static_cast<std::size_t>(comm_.rank())) continue;
-    if (rank < out.size()) out[rank].push_back(traveller(t));
+    if (is_there(tets_[t])) {
+      const int rank = shares.rank_of(stretch_of(tets_[t]));
+      if (rank == comm_.rank()) continue;
+      out[static_cast<std::size_t>(rank)].push_back(traveller(t));
+    }
     tets_[t] = {kNone, kNone, kNone, kNone};
     free.push_back(t);
   }

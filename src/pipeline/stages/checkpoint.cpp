@@ -108,15 +108,6 @@ void write_whole(const std::string& name, const Bytes& bytes) {
   throw OutputError(fmt::format("{}: what is kept to go on with cannot be written; is there room on the disk?", name));
 }
 
-/// The first rank's, for all.
-Bytes from_first(const Comm& comm, const Bytes& bytes) {
-  Bytes all;
-  comm.gather(bytes, "checkpoint").for_each([&](int, std::span<const std::byte> part) {
-    all.insert(all.end(), part.begin(), part.end());
-  });
-  return all;
-}
-
 void begin_folder(const std::filesystem::path& folder, const MadeOf& made) {
   std::error_code error;
   std::filesystem::create_directories(folder, error);
@@ -185,7 +176,8 @@ std::optional<Bytes> Checkpoint::read(const std::string& file) const {
   std::int64_t found = content.has_value();
   comm.sum(std::span(&found, 1), "checkpoint");
   if (found == 0) return std::nullopt;
-  return comm.alone() ? std::move(content) : from_first(comm, content ? *content : Bytes());
+  if (comm.alone()) return content;
+  return gathered_lists(comm, content ? *content : Bytes(), "checkpoint");  // the others have none
 }
 
 void Checkpoint::write(const std::string& file, Bytes content) const {

@@ -15,7 +15,7 @@ namespace {
 struct PackInto {
   Packer& to;
 
-  void operator()(const std::string& text) const { to.add(std::vector<char>(text.begin(), text.end())); }
+  void operator()(const std::string& text) const { to.add_text(text); }
   void operator()(const NamedSet& set) const { (*this)(set.name), to.add(set.kind), to.add(set.members); }
   void operator()(const std::pair<std::string, double>& counter) const {
     (*this)(counter.first), to.add(counter.second);
@@ -34,11 +34,7 @@ struct PackInto {
 struct UnpackFrom {
   Unpacker& from;
 
-  void operator()(std::string& text) const {
-    std::vector<char> chars;
-    from.take(chars);
-    text.assign(chars.begin(), chars.end());
-  }
+  void operator()(std::string& text) const { text = from.take_text(); }
   void operator()(NamedSet& set) const {
     (*this)(set.name), set.kind = from.take<NamedSet::Kind>(), from.take(set.members);
   }
