@@ -452,16 +452,25 @@ void MeshOfPieces::note_gone(TetIndex t) {
   if (has_regions_) origin_.region_of_gone.push_back(region_[t]);
 }
 
-std::vector<std::uint8_t> MeshOfPieces::corners_below(float threshold) const {
+template <class IsWanted>
+std::vector<std::uint8_t> MeshOfPieces::corners_where(const IsWanted& is_wanted) const {
   std::vector<std::uint8_t> marks(points_.size(), 0);
   parallel_ranges(tets_.size(), Split::kAdaptive, [&](std::size_t begin, std::size_t end) {
     for_each_shape(points_, tets_, objective_, begin, end, [&](std::size_t t, const Shape& shape) {
-      if (shape.score < threshold) mark_all(tets_[t], marks);
+      if (is_wanted(shape)) mark_all(tets_[t], marks);
     });
   });
-  join_marks(comm_, marks, "poor elements");
+  join_marks(comm_, marks, "corners of elements");
   if (!is_any_marked(marks)) marks.clear();
   return marks;
+}
+
+std::vector<std::uint8_t> MeshOfPieces::corners_below(float score) const {
+  return corners_where([=](const Shape& s) { return s.score < score; });
+}
+
+std::vector<std::uint8_t> MeshOfPieces::corners_to_improve(float beta, float score) const {
+  return corners_where([=](const Shape& s) { return s.beta <= beta || s.score < score; });
 }
 
 std::vector<std::uint8_t> MeshOfPieces::corners_of_crossings() const {

@@ -69,8 +69,10 @@ class MeshOfPieces {
   Bytes work_on_one(const std::vector<std::uint8_t>& waiting, int rings, const Work& work);
 
   std::vector<std::uint8_t> all() const { return std::vector<std::uint8_t>(points_.size(), 1); }
-  /// Marks the corners of elements with a score below the threshold; empty if there are none.
-  std::vector<std::uint8_t> corners_below(float threshold) const;
+  /// Marks the corners of elements with a lower score; empty if there are none.
+  std::vector<std::uint8_t> corners_below(float score) const;
+  /// The same of elements with this beta or less, or a lower score.
+  std::vector<std::uint8_t> corners_to_improve(float beta, float score) const;
   /// Marks the vertices of triangles of the boundary that cross; empty if none do.
   std::vector<std::uint8_t> corners_of_crossings() const;
 
@@ -109,6 +111,8 @@ class MeshOfPieces {
 
   /// Of some elements of this rank, or of all.
   using Among = const std::vector<TetIndex>*;
+  template <class IsWanted>
+  std::vector<std::uint8_t> corners_where(const IsWanted& is_wanted) const;
   std::vector<TetIndex> touching(const std::vector<std::uint8_t>& marks, Among among) const;
   std::vector<std::uint8_t> spread(std::vector<std::uint8_t> marks, int rings, Among among) const;
   Division divide(const std::vector<std::uint8_t>& near, std::vector<TetIndex>& tets, int stage);

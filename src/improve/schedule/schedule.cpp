@@ -509,6 +509,11 @@ void relieve_places(Improvement& improvement) {
   });
 }
 
+/// Where there is nothing to improve, as in the lattice, no piece is made.
+std::vector<std::uint8_t> waiting_at_first(const MeshOfPieces& mesh, ImproveOptions::Level level) {
+  return level == ImproveOptions::Level::kPaper ? mesh.all() : mesh.corners_to_improve(kGoodEnough, kGoodBest);
+}
+
 bool uses_places(ImproveOptions::Level level) {
   return level == ImproveOptions::Level::kDefault || level == ImproveOptions::Level::kBest;
 }
@@ -529,7 +534,8 @@ bool improve_mesh(TetMesh& mesh, const BoundaryInput* input, const ImproveOption
   pieces.call_before_stages(before_stage);
   int retries = 0;
   for (;;) {
-    improvement.run("pieces", pieces.all(), kRingsAtRim, [&](Schedule& run) { run_schedule(run, options); });
+    improvement.run("pieces", waiting_at_first(pieces, options.level), kRingsAtRim,
+                    [&](Schedule& run) { run_schedule(run, options); });
     if (uses_places(options.level)) relieve_places(improvement);
     if (!moves || retries == kMostRetries) break;
     const std::vector<VertexIndex> crossing = improvement.uncross();
