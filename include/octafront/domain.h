@@ -146,8 +146,8 @@ struct Domain {
   /// options_for_voxels() says. 0: it is not from an image.
   double voxel_spacing = 0;
 
-  /// fingerprint() of a surface that an exact search found clean, as open_domain() leaves it of images: generate() does
-  /// not search this very surface again. 0: of none.
+  /// fingerprint() of a surface that an exact search found clean, as open_domain() leaves it: generate() does not
+  /// search this very surface again. 0: of none.
   std::uint64_t found_clean = 0;
 
   /// Edges and nodes that the mesh will have inside: generate() makes them.

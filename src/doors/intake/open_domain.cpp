@@ -281,6 +281,7 @@ class Intake {
     if (options_.repair == Repair::kWrap) how.way = MendOptions::Way::kWrap;
     Mended mended = mend_surface(surface, how, context_);
     domain_.repairs.push_back({of, mended.report});
+    if (mended.report.clean && &surface == &domain_.surface) domain_.found_clean = fingerprint(surface);
     if (mended.report.clean || (!options_.tidies && is_tidied_only(mended.report))) return std::nullopt;
     note_all(domain_, options_, "repair", mended.report.notes);
     surface = std::move(mended.surface);
