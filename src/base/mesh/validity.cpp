@@ -245,6 +245,55 @@ struct FacesOfShare {
   bool has_listed(const Triangle& t) const { return share.is_here_alone(t); }
 };
 
+bool is_interface(const TetMesh& mesh, FaceOwner f) {
+  return f.listed() && f.of() >= mesh.boundary.size();
+}
+
+/// Who has each of some faces, in numbers alone: nothing is sorted, and nobody is named.
+class FaceTally {
+ public:
+  /// Room for as many faces with the least vertex first + k as faces_of_least_vertex[k] says.
+  FaceTally(VertexIndex first, std::vector<std::uint32_t>&& faces_of_least_vertex)
+      : first_(first), end_(std::move(faces_of_least_vertex)) {
+    std::uint32_t at = 0;
+    for (std::uint32_t& n : end_) at += std::exchange(n, at);
+    begin_ = end_;
+    faces_.resize(at);
+  }
+
+  void add(const Triangle& key, FaceOwner owner, bool is_of_interface) {
+    const VertexIndex v = key[0] - first_;
+    const std::uint64_t others = std::uint64_t{key[1]} << 32 | key[2];
+    std::uint32_t i = begin_[v];
+    while (i < end_[v] && faces_[i].others != others) ++i;
+    if (i == end_[v]) faces_[end_[v]++] = {others, 0};
+    const int kind = is_of_interface ? kInterface : 2 * owner.listed() + !owner.even();
+    if ((faces_[i].owners >> 2 * kind & 3) < 3) faces_[i].owners += 1u << 2 * kind;
+  }
+
+  /// Two tets from opposite sides, with an interface or without; a tet and its listed face.
+  bool is_good() const {
+    constexpr std::uint32_t kTets = 1 | 1 << 2, kInner = kTets | 1 << 2 * kInterface, kEven = 1 | 1 << 4,
+                            kOdd = 1 << 2 | 1 << 6;
+    for (std::size_t v = 0; v < begin_.size(); ++v)
+      for (std::uint32_t i = begin_[v]; i < end_[v]; ++i)
+        if (const std::uint32_t o = faces_[i].owners; o != kTets && o != kEven && o != kOdd && o != kInner)
+          return false;
+    return true;
+  }
+
+ private:
+  /// Owners of a kind are counted in two bits, up to three: even and odd faces of tets, of the boundary; interfaces.
+  static constexpr int kInterface = 4;
+  struct Face {
+    std::uint64_t others;  ///< its middle and last vertex
+    std::uint32_t owners;
+  };
+  VertexIndex first_;
+  std::vector<std::uint32_t> begin_, end_;
+  std::vector<Face> faces_;
+};
+
 /// The faces of the tets and the listed ones, by ranges of their least vertices: a range at a time is looked at.
 class FacesInRanges {
  public:
@@ -264,32 +313,42 @@ class FacesInRanges {
         }) {}
 
   std::size_t ranges() const { return ranges_.count(); }
+  bool is_good(std::size_t range) const {
+    const auto first = static_cast<VertexIndex>(ranges_.begin(range));
+    std::vector<std::uint32_t> count(ranges_.end(range) - first, 0);
+    for_each_face(range, [&](const Triangle& corners, FaceOwner) { ++count[face_key(corners)[0] - first]; });
+    FaceTally tally(first, std::move(count));
+    for_each_face(range, [&](const Triangle& corners, FaceOwner owner) {
+      tally.add(face_key(corners), owner, is_interface(mesh_, owner));
+    });
+    return tally.is_good();
+  }
   /// The faces of one range, numbered by their owners.
   FaceTable table(std::size_t range) const {
     const auto first = static_cast<VertexIndex>(ranges_.begin(range));
     return {first, ranges_.end(range) - first, [&](const auto& add) {
-              for (const std::uint32_t h : half_faces_[range]) {
-                const Triangle corners = face_of(mesh_.tets[h / 4], static_cast<int>(h % 4));
-                add(corners, FaceOwner(h / 4, false, corners).number);
-              }
-              for (const std::uint32_t f : listed_[range]) {
-                const Triangle& corners = listed_face(mesh_, f);
-                add(corners, FaceOwner(f, true, corners).number);
-              }
+              for_each_face(range, [&](const Triangle& corners, FaceOwner owner) { add(corners, owner.number); });
             }};
   }
 
  private:
+  template <class Visit>
+  void for_each_face(std::size_t range, const Visit& visit) const {
+    for (const std::uint32_t h : half_faces_[range]) {
+      const Triangle corners = face_of(mesh_.tets[h / 4], static_cast<int>(h % 4));
+      visit(corners, FaceOwner(h / 4, false, corners));
+    }
+    for (const std::uint32_t f : listed_[range]) {
+      const Triangle& corners = listed_face(mesh_, f);
+      visit(corners, FaceOwner(f, true, corners));
+    }
+  }
   std::size_t range_of(const Triangle& t) const { return ranges_.of(face_key(t)[0]); }
 
   const TetMesh& mesh_;
   RangeBuckets ranges_;
   Buckets<> half_faces_, listed_;
 };
-
-bool is_interface(const TetMesh& mesh, FaceOwner f) {
-  return f.listed() && f.of() >= mesh.boundary.size();
-}
 
 /// `first`: as for sign_defect().
 std::string name(const TetMesh& mesh, FaceOwner f, std::uint64_t first) {
@@ -334,7 +393,7 @@ template <class Faces>
 std::optional<std::string> face_defect(const TetMesh& mesh, const Faces& which, std::uint64_t first) {
   const FacesInRanges faces(mesh, which);
   const auto defect_in = [&](std::size_t range) { return defect_in_table(mesh, faces.table(range), first); };
-  const std::size_t range = parallel_find(faces.ranges(), [&](std::size_t r) { return defect_in(r).has_value(); });
+  const std::size_t range = parallel_find(faces.ranges(), [&](std::size_t r) { return !faces.is_good(r); });
   return range < faces.ranges() ? defect_in(range) : std::nullopt;
 }
 
