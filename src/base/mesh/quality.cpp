@@ -4,6 +4,7 @@
 #include "base/core/groups.h"
 #include "base/core/parallel.h"
 #include "base/geometry/measures.h"
+#include "base/mesh/quality_batch.h"
 #include "base/mesh/quality_sum.h"
 
 #include <algorithm>
@@ -49,8 +50,8 @@ std::array<Direction, 6> angles_of(const std::array<Vec3, 4>& q) {
           angle(v - u, na, nd), angle(w - u, na, nc), angle(w - v, na, nb)};
 }
 
-// Classes of 10 degrees. What is at hand grows with the angle from 0 to 2 and needs one division; a table tells the
-// class of most of its values, and the class before the border that lies within the rest.
+// Classes of 10 degrees. A table tells the class of most angles of a step, and the class before the border that lies
+// within the rest.
 class AngleClasses {
  public:
   AngleClasses() {
@@ -66,37 +67,53 @@ class AngleClasses {
     }
   }
 
-  std::size_t of(const Direction& angle) const {
-    std::size_t c = first_[step_of(angle)];
+  std::size_t of(const Direction& angle, std::int32_t step) const {
+    std::size_t c = first_[step];
     while (c < kClasses - 1 && !angle.is_below(border_[c])) ++c;
     return c;
   }
 
  private:
-  static constexpr int kClasses = 18, kSteps = 256;
+  static constexpr int kClasses = 18, kSteps = QualityBatch::kSteps;
 
   static int step_of(const Direction& d) {
-    const double step = (1 - d.x / (std::abs(d.x) + d.y)) * (0.5 * kSteps);
-    return step < kSteps ? static_cast<int>(step) : kSteps;
+    return static_cast<int>((1 - d.x / (std::abs(d.x) + d.y)) * (0.5 * kSteps));
   }
 
   std::array<Direction, kClasses - 1> border_;  ///< the lower ones of all classes but the first
   std::array<std::uint8_t, kSteps + 1> first_;  ///< the least class that an angle of this step may have
 };
 
-std::size_t class_of(const Direction& angle) {
+const AngleClasses& angle_classes() {
   static const AngleClasses classes;
-  return classes.of(angle);
+  return classes;
+}
+
+/// Calls visit(batch, i, tet) for the tets tet_at(begin) ... tet_at(end - 1), the i-th of a batch each.
+template <class TetAt, class Visit>
+void for_each_quality(const TetMesh& mesh, std::size_t begin, std::size_t end, const TetAt& tet_at,
+                      const Visit& visit) {
+  QualityBatch batch;
+  while (begin < end) {
+    const int count = static_cast<int>(std::min<std::size_t>(QualityBatch::kSize, end - begin));
+    for (int i = 0; i < count; ++i)
+      for (int k = 0; k < 4; ++k) batch.set(i, k, mesh.points[mesh.tets[tet_at(begin + i)][k]]);
+    batch.evaluate();
+    for (int i = 0; i < count; ++i) visit(batch, i, tet_at(begin + i));
+    begin += static_cast<std::size_t>(count);
+  }
 }
 
 // The sum over a stretch of elements; the extreme angles wait to be converted.
 struct Part {
   QualitySum sum;
   Direction least{-1, 0}, most{1, 0};
+  std::int32_t least_step = QualityBatch::kSteps, most_step = 0;
+  const AngleClasses* classes = &angle_classes();
 
-  void add_tet(TetIndex tet, const std::array<Vec3, 4>& q) {
+  void add(const QualityBatch& batch, int i, TetIndex tet) {
     QualitySummary& s = sum.summary;
-    const double beta = std::min(1.0, tet_radius_ratio(q[0], q[1], q[2], q[3]));
+    const double beta = std::min(1.0, batch.beta[i]);
     ++s.elements;
     sum.beta += std::llround(beta / QualitySum::kBetaUnit);
     ++s.beta_classes[static_cast<std::size_t>(std::clamp(static_cast<int>(beta * 5), 0, 4))];
@@ -104,15 +121,19 @@ struct Part {
       s.beta_min = beta;
       s.beta_min_tet = tet;
     }
-    for (const Direction& angle : angles_of(q)) {
-      if (angle.is_below(least)) least = angle;
-      if (most.is_below(angle)) most = angle;
-      ++s.dihedral_histogram[class_of(angle)];
-    }
+    for (int e = 0; e < 6; ++e) add({batch.x[e][i], batch.y[e][i]}, batch.step[e][i]);
   }
   void convert_angles() {
     sum.summary.dihedral_min = least.degrees();
     sum.summary.dihedral_max = most.degrees();
+  }
+
+ private:
+  void add(const Direction& angle, std::int32_t step) {
+    // Two steps away nothing is beyond.
+    if (step < least_step + 2 && angle.is_below(least)) least = angle, least_step = step;
+    if (step > most_step - 2 && most.is_below(angle)) most = angle, most_step = step;
+    ++sum.summary.dihedral_histogram[classes->of(angle, step)];
   }
 };
 
@@ -122,12 +143,10 @@ QualitySum summed(const TetMesh& mesh, std::size_t n, std::uint64_t first_tet, c
   constexpr std::size_t kBlock = 8192;
   std::vector<Part> parts((n + kBlock - 1) / kBlock);
   parallel_for(parts.size(), [&](std::size_t block) {
-    for (std::size_t i = block * kBlock; i < std::min(n, (block + 1) * kBlock); ++i) {
-      const TetIndex t = tet_at(i);
-      const auto& [a, b, c, d] = mesh.tets[t];
-      const auto& p = mesh.points;
-      parts[block].add_tet(static_cast<TetIndex>(first_tet + t), normalized_corners(p[a], p[b], p[c], p[d]));
-    }
+    for_each_quality(mesh, block * kBlock, std::min(n, (block + 1) * kBlock), tet_at,
+                     [&](const QualityBatch& batch, int i, TetIndex t) {
+                       parts[block].add(batch, i, static_cast<TetIndex>(first_tet + t));
+                     });
     parts[block].convert_angles();
   });
   QualitySum whole;
@@ -220,17 +239,17 @@ std::vector<PoorElement> worst_elements(const TetMesh& mesh, std::size_t count) 
     std::partial_sort(of.begin(), of.begin() + static_cast<std::ptrdiff_t>(kept), of.end());
     of.resize(kept);
   };
+  const auto number = [](std::size_t t) { return static_cast<TetIndex>(t); };
   // Whoever is among the worst of all is among the worst of its range.
   constexpr std::size_t kRange = 8192;
-  auto all = parallel_collect<Candidate>(mesh.tets.size(), kRange,
-                                         [&](std::size_t begin, std::size_t end, std::vector<Candidate>& found) {
-                                           for (std::size_t t = begin; t < end; ++t) {
-                                             const auto [a, b, c, d] = corners(t);
-                                             const double beta = radius_ratio(a, b, c, d);
-                                             found.push_back({std::isnan(beta) ? -1 : beta, static_cast<TetIndex>(t)});
-                                           }
-                                           keep_least(found);
-                                         });
+  auto all = parallel_collect<Candidate>(
+      mesh.tets.size(), kRange, [&](std::size_t begin, std::size_t end, std::vector<Candidate>& found) {
+        for_each_quality(mesh, begin, end, number, [&](const QualityBatch& batch, int i, TetIndex t) {
+          const double beta = std::clamp(batch.beta[i], -1.0, 1.0);
+          found.push_back({std::isnan(beta) ? -1 : beta, t});
+        });
+        keep_least(found);
+      });
   keep_least(all);
   std::vector<PoorElement> worst;
   for (const auto& [beta, t] : all) {
