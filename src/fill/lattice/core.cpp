@@ -70,7 +70,7 @@ class CoreChunk {
 
    private:
     SiteNumber number(LatticeSite site) {
-      auto& [known, n] = recent_[FlatKeys<LatticeSite>::hash(site) >> 55];
+      auto& [known, n] = recent_[FlatKeys<LatticeSite>::hash(site) >> (64 - kRecentBits)];
       if (known != site) known = site, n = look_up(site);
       return n;
     }
@@ -145,7 +145,8 @@ class CoreChunk {
     const ClearSites& sites_;
     SiteTable table_;  ///< of the hanging sites
     std::vector<float> hanging_distance_;
-    std::array<std::pair<LatticeSite, SiteNumber>, 512> recent_;
+    static constexpr int kRecentBits = 11;
+    std::array<std::pair<LatticeSite, SiteNumber>, 1 << kRecentBits> recent_;
   };
 };
 
