@@ -69,7 +69,13 @@ template <class Item, class Collect>
 std::vector<Item> parallel_collect(std::size_t n, std::size_t range, const Collect& collect) {
   std::vector<std::vector<Item>> parts((n + range - 1) / range);
   parallel_for(
-      parts.size(), [&](std::size_t i) { collect(i * range, std::min(n, (i + 1) * range), parts[i]); }, Split::kSingly);
+      parts.size(),
+      [&](std::size_t i) {
+        collect(i * range, std::min(n, (i + 1) * range), parts[i]);
+        // Room that nothing came to fill would stay until all parts are there.
+        if (parts[i].capacity() > 2 * parts[i].size()) parts[i].shrink_to_fit();
+      },
+      Split::kSingly);
   std::size_t size = 0;
   for (const auto& part : parts) size += part.size();
   std::vector<Item> all;
