@@ -326,7 +326,7 @@ void adapt_surface_input(Session& session) {
   TetMesh triangles;
   triangles.points = std::move(result.surface.points), triangles.boundary = std::move(result.surface.triangles);
   triangles.patch = std::move(result.surface.patch), triangles.patch_names = std::move(result.surface.patch_names);
-  write_mesh_targets(session, std::move(triangles));
+  write_mesh_targets(session, triangles);
   tell_adapted(session, result);
   say_written(session);
 }
@@ -367,7 +367,7 @@ void run_convert(Session& session) {
   // Whoever converts wants the mesh as it is; but nobody should find out in the solver.
   if (const auto defect = first_defect(mesh, session.context()))
     session.say_notes("checking", {"the mesh is not valid: " + *defect});
-  write_mesh_targets(session, std::move(mesh));
+  write_mesh_targets(session, mesh);
   say_written(session);
 }
 

@@ -13,6 +13,7 @@
 #include <cstdio>
 #include <cstdlib>
 #include <fstream>
+#include <optional>
 
 #include <fmt/core.h>
 #include <unistd.h>
@@ -170,11 +171,14 @@ void check_surface_targets(const Arguments& a) {
   }
 }
 
-void write_mesh_targets(Session& session, TetMesh mesh, std::span<const MeshField> fields) {
+void write_mesh_targets(Session& session, const TetMesh& as_it_is, std::span<const MeshField> fields) {
   const Arguments& a = session.arguments();
+  std::optional<TetMesh> grouped;
+  if (!a.groups.empty()) grouped = as_it_is;
+  const TetMesh& mesh = grouped ? *grouped : as_it_is;
   std::vector<std::string> group_notes;
   for (const GroupRule& rule : a.groups)
-    if (std::string note = add_group(mesh, rule); !note.empty()) group_notes.push_back(std::move(note));
+    if (std::string note = add_group(*grouped, rule); !note.empty()) group_notes.push_back(std::move(note));
   Json all = Json::array();
   for (std::size_t i = 0; i < a.meshes.size(); ++i) {
     session.context().report("writing", -1);

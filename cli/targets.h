@@ -15,7 +15,7 @@ void check_mesh_targets(const Arguments& arguments);
 
 /// Adds the groups that were asked for, writes the mesh to all outputs, with fields to those that hold some, and says
 /// what was lost on the way.
-void write_mesh_targets(Session& session, TetMesh mesh, std::span<const MeshField> fields = {});
+void write_mesh_targets(Session& session, const TetMesh& mesh, std::span<const MeshField> fields = {});
 
 /// Whether ranks write their shares of a mesh by themselves: all outputs are .pvtu, and nothing asks for more.
 bool takes_shares(const Arguments& arguments);
