@@ -150,9 +150,10 @@ class GridMaker {
     find_samples_of_leaves();
     corners_ = octree_corners(tree_);
     context_.check();
-    const std::vector<double> caps = corner_caps();
-    graded_ = graded_corners(tree_, corners_, {caps, rules_.keep_sources ? sizes_behind(caps) : caps}, rules_.gradation,
-                             ceiling_, context_);
+    std::vector<double> caps = corner_caps();
+    std::vector<double> sources = rules_.keep_sources ? sizes_behind(caps) : caps;
+    graded_ =
+        graded_corners(tree_, corners_, {std::move(caps), std::move(sources)}, rules_.gradation, ceiling_, context_);
     fill_field();
   }
 
@@ -181,8 +182,8 @@ class GridMaker {
 
   /// The largest size that is wanted on the surface and that gradation allows there.
   double largest_at_samples() const {
-    double largest = 0;
-    for (std::size_t l = 0; l < tree_.size(); ++l) {
+    std::vector<double> largest(tree_.size(), 0);
+    parallel_for(tree_.size(), [&](std::size_t l) {
       const double scale = 1u << tree_.leaf(l).level();
       const auto corner = tree_.leaf(l).corner();
       const auto local = [&](double x, int axis) {
@@ -190,10 +191,10 @@ class GridMaker {
       };
       for (const Sample& s : samples_in(l)) {
         const double h = trilinear(field_->h[l], local(s.p.x, 0), local(s.p.y, 1), local(s.p.z, 2));
-        largest = std::max(largest, std::min(h, s.h));
+        largest[l] = std::max(largest[l], std::min(h, s.h));
       }
-    }
-    return largest;
+    });
+    return *std::ranges::max_element(largest);
   }
 
   /// Leaves that are too large for the graded sizes in them are divided. True if there are any.

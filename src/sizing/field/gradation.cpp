@@ -59,8 +59,12 @@ struct Cut {
 
 class Grader {
  public:
-  Grader(const Octree& tree, const OctreeCorners& corners, const GradedCorners& caps, double gradation, double ceiling)
-      : tree_(tree), corners_(corners), slope_(gradation * kSafety), value_(caps.value), source_(caps.source) {
+  Grader(const Octree& tree, const OctreeCorners& corners, GradedCorners caps, double gradation, double ceiling)
+      : tree_(tree),
+        corners_(corners),
+        slope_(gradation * kSafety),
+        value_(std::move(caps.value)),
+        source_(std::move(caps.source)) {
     for (std::size_t c = 0; c < value_.size(); ++c)
       if (!(value_[c] < ceiling)) value_[c] = source_[c] = ceiling;
   }
@@ -420,9 +424,9 @@ class Grader {
 
 }  // namespace
 
-GradedCorners graded_corners(const Octree& tree, const OctreeCorners& corners, const GradedCorners& caps,
-                             double gradation, double ceiling, const RunContext& context) {
-  return Grader(tree, corners, caps, gradation, ceiling).run(context);
+GradedCorners graded_corners(const Octree& tree, const OctreeCorners& corners, GradedCorners caps, double gradation,
+                             double ceiling, const RunContext& context) {
+  return Grader(tree, corners, std::move(caps), gradation, ceiling).run(context);
 }
 
 std::shared_ptr<OctreeField> graded_field(const RootCube& root, Octree tree, const OctreeCorners& corners,

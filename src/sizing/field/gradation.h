@@ -22,8 +22,8 @@ struct GradedCorners {
 /// `caps` has one entry per corner, in units of the root cube's side (as the values are); entries of hanging corners
 /// are not read: what limits them must be laid on their shares. Values end at `ceiling`. At least one cap must be
 /// finite or the ceiling be. Cost: about 3 microseconds per corner whose value is not its cap.
-GradedCorners graded_corners(const Octree& tree, const OctreeCorners& corners, const GradedCorners& caps,
-                             double gradation, double ceiling, const RunContext& context);
+GradedCorners graded_corners(const Octree& tree, const OctreeCorners& corners, GradedCorners caps, double gradation,
+                             double ceiling, const RunContext& context);
 /// The field of such values.
 std::shared_ptr<OctreeField> graded_field(const RootCube& root, Octree tree, const OctreeCorners& corners,
                                           const std::vector<double>& caps, double gradation, double ceiling,

@@ -1,5 +1,6 @@
 #include <octafront/repair.h>
 
+#include "base/core/parallel.h"
 #include "base/core/wording.h"
 #include "soup/defects/steps.h"
 
@@ -98,11 +99,12 @@ SurfaceDefects defects::find_defects_but_crossings(const RepairedSurface& repair
                                                    const RunContext& context) {
   SurfaceDefects found;
   found.no_faces = repaired.surface.triangles.empty();
-  find_bad_edges(repaired, table, found);
+  parallel_invoke([&] { find_bad_vertices(repaired, table, found); },
+                  [&] {
+                    find_bad_edges(repaired, table, found);
+                    find_degenerate_faces(repaired, found);
+                  });
   context.check();
-  find_bad_vertices(repaired, table, found);
-  context.check();
-  find_degenerate_faces(repaired, found);
   return found;
 }
 
