@@ -25,14 +25,14 @@ struct Edges {
   Vec3 u, v, w;
 };
 
-OCTAFRONT_KERNEL Vec3 edge_of(const QualityBatch& b, int k, int i) {
+OCTAFRONT_KERNEL Vec3 from_first(const QualityBatch& b, int k, int i) {
   return {b.corner[k][0][i] - b.corner[0][0][i], b.corner[k][1][i] - b.corner[0][1][i],
           b.corner[k][2][i] - b.corner[0][2][i]};
 }
 
 /// In units of the largest coordinate, so that no power of a length overflows or underflows.
 OCTAFRONT_KERNEL Edges edges_of(const QualityBatch& b, int i) {
-  const Vec3 u = edge_of(b, 1, i), v = edge_of(b, 2, i), w = edge_of(b, 3, i);
+  const Vec3 u = from_first(b, 1, i), v = from_first(b, 2, i), w = from_first(b, 3, i);
   const double size = greater(greater(largest_of(u), largest_of(v)), largest_of(w)), by = size > 0 ? size : 1;
   return {u / by, v / by, w / by};
 }
