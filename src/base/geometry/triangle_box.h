@@ -19,8 +19,7 @@ bool segment_overlaps_box(Vec3 p, Vec3 q, const Box3& box);
 
 /// Squared distance from p to the box, 0 inside.
 constexpr double squared_distance(Vec3 p, const Box3& box) {
-  const Vec3 below = max(box.lo - p, Vec3{}), above = max(p - box.hi, Vec3{});
-  return squared_length(below) + squared_length(above);
+  return squared_length(max(max(box.lo - p, p - box.hi), Vec3{}));
 }
 
 }  // namespace octafront

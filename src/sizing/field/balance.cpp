@@ -8,16 +8,18 @@
 
 #include "sizing/field/octree.h"
 
+#include "base/core/parallel.h"
+
 #include <algorithm>
 
 namespace octafront {
 
 namespace {
 
-constexpr std::size_t kFewKeys = std::size_t{1} << 16;
+constexpr std::size_t kCellsAtOnce = 8192;
 
 void sort_unique(std::vector<OctreeKey>& cells) {
-  std::sort(cells.begin(), cells.end());
+  parallel_sort(cells);
   cells.erase(std::unique(cells.begin(), cells.end()), cells.end());
 }
 
@@ -36,15 +38,13 @@ void add_parents_around(OctreeKey cell, std::vector<OctreeKey>& parents) {
 void DividedCells::close() {
   for (int l = OctreeKey::kMaxLevel; l > 0; --l) {
     sort_unique(levels_[l]);
-    std::vector<OctreeKey> parents;
-    std::size_t most = kFewKeys;
-    for (std::size_t i = 0; i < levels_[l].size(); ++i) {
-      add_parents_around(levels_[l][i], parents);
-      // Siblings share most of their parents' neighbours; thin the list out before it grows large.
-      if (parents.size() <= most) continue;
-      sort_unique(parents);
-      most = std::max(kFewKeys, 2 * parents.size());
-    }
+    const std::vector<OctreeKey>& cells = levels_[l];
+    // Siblings share most of their parents' neighbours: few are left of those of a range.
+    const auto parents = parallel_collect<OctreeKey>(
+        cells.size(), kCellsAtOnce, [&](std::size_t begin, std::size_t end, std::vector<OctreeKey>& found) {
+          for (std::size_t i = begin; i < end; ++i) add_parents_around(cells[i], found);
+          sort_unique(found);
+        });
     levels_[l - 1].insert(levels_[l - 1].end(), parents.begin(), parents.end());
   }
   sort_unique(levels_[0]);
