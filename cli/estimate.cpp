@@ -19,10 +19,10 @@ struct Cost {
   double per_tet, per_face;
   double of(const Estimate& e) const { return per_tet * e.tets + per_face * e.boundary_faces; }
 };
-constexpr Cost kFillSeconds{2e-6, 12e-6}, kImproveSeconds{0.6e-6, 9e-6}, kBytes{49, 400}, kFileBytes{8.4, 35};
+constexpr Cost kFillSeconds{2e-6, 12e-6}, kImproveSeconds{0.6e-6, 9e-6}, kBytes{41, 310}, kFileBytes{8.4, 35};
 // The same of triangles that are kept and longer than the sizes: for each size along their longest edges beyond two.
 constexpr double kFillPerSizeOfEdge = 0.1e-3, kImprovePerSizeOfEdge = 0.25e-3;
-constexpr double kBytesOfProgram = 33e6;
+constexpr double kBytesOfProgram = 27e6;
 /// Twice as many threads take about 1 / 1.7 of the time.
 constexpr double kThreadPower = 0.75;
 
