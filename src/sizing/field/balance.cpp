@@ -6,9 +6,8 @@
 // of closing parents instead of rippling through leaves: T. Isaac, C. Burstedde, O. Ghattas, "Low-cost parallel
 // algorithms for 2:1 octree balance", 2012.)
 
-#include "sizing/field/octree.h"
-
 #include "base/core/parallel.h"
+#include "sizing/field/octree.h"
 
 #include <algorithm>
 
