@@ -151,9 +151,9 @@ class Crumples {
   /// As far as the tolerance tells.
   bool lies_in_plane_of(std::uint32_t base, std::uint32_t t) const {
     const auto& [a, b, c] = triangles()[base];
-    const Vec3 normal = unit_normal(at(a), at(b), at(c));
+    const Vec3 origin = at(a), normal = unit_normal(origin, at(b), at(c));
     return std::ranges::all_of(triangles()[t],
-                               [&](VertexIndex v) { return std::abs(dot(at(v) - at(a), normal)) <= tolerance_; });
+                               [&](VertexIndex v) { return std::abs(dot(at(v) - origin, normal)) <= tolerance_; });
   }
 
   /// Neighbours that have no corner of their own.
