@@ -18,6 +18,7 @@
 #include <initializer_list>
 #include <limits>
 #include <span>
+#include <utility>
 
 #include <fmt/core.h>
 
