@@ -4,6 +4,7 @@
 #include "base/core/groups.h"
 #include "base/core/parallel.h"
 #include "base/geometry/measures.h"
+#include "base/mesh/dihedral.h"
 #include "base/mesh/quality_batch.h"
 #include "base/mesh/quality_sum.h"
 
@@ -27,27 +28,8 @@ std::array<Vec3, 4> normalized_corners(Vec3 a, Vec3 b, Vec3 c, Vec3 d) {
   return q;
 }
 
-// An angle in [0, 180] degrees as a direction of any length: its order needs neither a root nor an arc tangent.
-struct Direction {
-  double x, y;  // y >= 0, not both 0
-  double degrees() const { return elementary::atan2(y, x) * (180 / std::numbers::pi); }
-  bool is_below(const Direction& other) const {
-    const double turn = x * other.y - y * other.x;
-    return turn > 0 || (turn == 0 && x > 0 && other.x < 0);
-  }
-};
-
-// Angles from one determinant and the products of face normals: y over x keeps the digits of needles and slivers.
-std::array<Direction, 6> angles_of(const std::array<Vec3, 4>& q) {
-  const Vec3 u = q[1] - q[0], v = q[2] - q[0], w = q[3] - q[0];
-  const Vec3 nb = cross(v, w), nc = cross(w, u), nd = cross(u, v), na = -(nb + nc + nd);
-  const double det = std::abs(dot(u, nb));
-  const auto angle = [&](Vec3 edge, Vec3 m, Vec3 n) {
-    const Direction d{-dot(m, n), length(edge) * det};
-    return d.x == 0 && d.y == 0 ? Direction{1, 0} : d;
-  };
-  return {angle(u, nc, nd),     angle(v, nb, nd),     angle(w, nb, nc),
-          angle(v - u, na, nd), angle(w - u, na, nc), angle(w - v, na, nb)};
+double degrees_of(const AngleDirection& angle) {
+  return elementary::atan2(angle.y, angle.x) * (180 / std::numbers::pi);
 }
 
 // Classes of 10 degrees. A table tells the class of most angles of a step, and the class before the border that lies
@@ -67,7 +49,7 @@ class AngleClasses {
     }
   }
 
-  std::size_t of(const Direction& angle, std::int32_t step) const {
+  std::size_t of(const AngleDirection& angle, std::int32_t step) const {
     std::size_t c = first_[step];
     while (c < kClasses - 1 && !angle.is_below(border_[c])) ++c;
     return c;
@@ -76,12 +58,12 @@ class AngleClasses {
  private:
   static constexpr int kClasses = 18, kSteps = QualityBatch::kSteps;
 
-  static int step_of(const Direction& d) {
+  static int step_of(const AngleDirection& d) {
     return static_cast<int>((1 - d.x / (std::abs(d.x) + d.y)) * (0.5 * kSteps));
   }
 
-  std::array<Direction, kClasses - 1> border_;  ///< the lower ones of all classes but the first
-  std::array<std::uint8_t, kSteps + 1> first_;  ///< the least class that an angle of this step may have
+  std::array<AngleDirection, kClasses - 1> border_;  ///< the lower ones of all classes but the first
+  std::array<std::uint8_t, kSteps + 1> first_;       ///< the least class that an angle of this step may have
 };
 
 const AngleClasses& angle_classes() {
@@ -107,7 +89,7 @@ void for_each_quality(const TetMesh& mesh, std::size_t begin, std::size_t end, c
 // The sum over a stretch of elements; the extreme angles wait to be converted.
 struct Part {
   QualitySum sum;
-  Direction least{-1, 0}, most{1, 0};
+  AngleDirection least{-1, 0}, most{1, 0};
   std::int32_t least_step = QualityBatch::kSteps, most_step = 0;
   const AngleClasses* classes = &angle_classes();
 
@@ -124,12 +106,12 @@ struct Part {
     for (int e = 0; e < 6; ++e) add({batch.x[e][i], batch.y[e][i]}, batch.step[e][i]);
   }
   void convert_angles() {
-    sum.summary.dihedral_min = least.degrees();
-    sum.summary.dihedral_max = most.degrees();
+    sum.summary.dihedral_min = degrees_of(least);
+    sum.summary.dihedral_max = degrees_of(most);
   }
 
  private:
-  void add(const Direction& angle, std::int32_t step) {
+  void add(const AngleDirection& angle, std::int32_t step) {
     // Two steps away nothing is beyond.
     if (step < least_step + 2 && angle.is_below(least)) least = angle, least_step = step;
     if (step > most_step - 2 && most.is_below(angle)) most = angle, most_step = step;
@@ -167,9 +149,9 @@ double radius_ratio(Vec3 a, Vec3 b, Vec3 c) {
 }
 
 std::array<double, 6> dihedral_angles(Vec3 a, Vec3 b, Vec3 c, Vec3 d) {
+  const auto q = normalized_corners(a, b, c, d);
   std::array<double, 6> degrees{};
-  const auto angles = angles_of(normalized_corners(a, b, c, d));
-  std::transform(angles.begin(), angles.end(), degrees.begin(), [](const Direction& angle) { return angle.degrees(); });
+  std::ranges::transform(dihedral_directions(q[1], q[2], q[3]), degrees.begin(), degrees_of);
   return degrees;
 }
 

@@ -1,29 +1,14 @@
 #include "improve/shape/shape.h"
 
+#include "base/core/vector_units.h"
 #include "base/geometry/predicates.h"
 
 #include <array>
-
-// The kernel is plain arithmetic without branches, compiled once for each width of vector unit and chosen at run time.
-// All versions give the same bits: no contraction, no reassociation.
 
 namespace octafront::improve {
 namespace {
 
 using Objective = ImproveOptions::Objective;
-
-#if defined(__GNUC__)
-#define OCTAFRONT_INLINE inline __attribute__((always_inline))
-#else
-#define OCTAFRONT_INLINE inline
-#endif
-
-OCTAFRONT_INLINE double greater(double a, double b) {
-  return a > b ? a : b;
-}
-OCTAFRONT_INLINE double lesser(double a, double b) {
-  return a < b ? a : b;
-}
 
 constexpr double kTiny = 1e-300;  // keeps flat elements from dividing zero by zero
 
@@ -33,7 +18,7 @@ struct Faces {
   double la, lb, lc, ld;
 };
 
-OCTAFRONT_INLINE Faces faces_of_edges(Vec3 u, Vec3 v, Vec3 w) {
+OCTAFRONT_KERNEL Faces faces_of_edges(Vec3 u, Vec3 v, Vec3 w) {
   Faces f;
   f.nb = cross(v, w), f.nc = cross(w, u), f.nd = cross(u, v);
   f.na = -(f.nb + f.nc + f.nd);  // area normals of a closed surface sum to zero
@@ -48,19 +33,19 @@ struct Volume {
   double center;
 };
 
-OCTAFRONT_INLINE Volume volume_of(const Faces& f, Vec3 u, Vec3 v, Vec3 w) {
+OCTAFRONT_KERNEL Volume volume_of(const Faces& f, Vec3 u, Vec3 v, Vec3 w) {
   const Vec3 center = squared_length(u) * f.nb + squared_length(v) * f.nc + squared_length(w) * f.nd;
   return {dot(f.nd, w), std::sqrt(squared_length(center) + kTiny)};
 }
 
-OCTAFRONT_INLINE double beta_of(const Faces& f, const Volume& v) {
+OCTAFRONT_KERNEL double beta_of(const Faces& f, const Volume& v) {
   const double beta = 6 * v.det * std::abs(v.det) / ((f.la + f.lb + f.lc + f.ld) * v.center);
   // Where the centre of a flat element cancels to nothing, rounding alone decides the quotient.
   return greater(lesser(1, beta), -1);
 }
 
 /// The mean ratio to the power 3/2: no root of third order, and a sliver is worth about what its beta is.
-OCTAFRONT_INLINE double mean_ratio_score(const Volume& volume, Vec3 u, Vec3 v, Vec3 w) {
+OCTAFRONT_KERNEL double mean_ratio_score(const Volume& volume, Vec3 u, Vec3 v, Vec3 w) {
   constexpr double kRegular = 20.784609690826528;  // 12^(3/2) / 2
   const double edges = squared_length(u) + squared_length(v) + squared_length(w) + squared_length(v - u) +
                        squared_length(w - v) + squared_length(u - w) + kTiny;
@@ -71,7 +56,7 @@ OCTAFRONT_INLINE double mean_ratio_score(const Volume& volume, Vec3 u, Vec3 v, V
 struct Cosines {
   double most = -1, least = 1;
 
-  OCTAFRONT_INLINE void add(double a, double b, double c) {
+  OCTAFRONT_KERNEL void add(double a, double b, double c) {
     const double ia = 1 / std::sqrt(a + kTiny), ib = 1 / std::sqrt(b + kTiny), ic = 1 / std::sqrt(c + kTiny);
     const double at_a = 0.5 * (b + c - a) * ib * ic, at_b = 0.5 * (a + c - b) * ia * ic,
                  at_c = 0.5 * (a + b - c) * ia * ib;
@@ -81,7 +66,7 @@ struct Cosines {
 };
 
 /// What the element checks of structural solvers look at; see shape.h.
-OCTAFRONT_INLINE double solver_score(const Volume& volume, Vec3 u, Vec3 v, Vec3 w) {
+OCTAFRONT_KERNEL double solver_score(const Volume& volume, Vec3 u, Vec3 v, Vec3 w) {
   constexpr double kRegular = 2.5980762113533160;  // 3^(3/2) / 2
   const double uu = squared_length(u), vv = squared_length(v), ww = squared_length(w), uv = squared_length(v - u),
                vw = squared_length(w - v), wu = squared_length(u - w);
@@ -102,7 +87,7 @@ OCTAFRONT_INLINE double solver_score(const Volume& volume, Vec3 u, Vec3 v, Vec3 
 }
 
 template <Objective kObjective>
-OCTAFRONT_INLINE void shape_of_edges(Vec3 u, Vec3 v, Vec3 w, double& beta, double& small, double& large,
+OCTAFRONT_KERNEL void shape_of_edges(Vec3 u, Vec3 v, Vec3 w, double& beta, double& small, double& large,
                                      double& quality) {
   const Faces f = faces_of_edges(u, v, w);
   const Volume volume = volume_of(f, u, v, w);
@@ -126,7 +111,7 @@ OCTAFRONT_INLINE void shape_of_edges(Vec3 u, Vec3 v, Vec3 w, double& beta, doubl
 }
 
 template <Objective kObjective>
-OCTAFRONT_INLINE void star_kernel(ShapeBatch& s, Vec3 apex, int n) {
+OCTAFRONT_KERNEL void star_kernel(ShapeBatch& s, Vec3 apex, int n) {
   for (int i = 0; i < n; ++i) {
     const Vec3 b{s.corner[1][0][i], s.corner[1][1][i], s.corner[1][2][i]};
     const Vec3 c{s.corner[2][0][i], s.corner[2][1][i], s.corner[2][2][i]};
@@ -136,7 +121,7 @@ OCTAFRONT_INLINE void star_kernel(ShapeBatch& s, Vec3 apex, int n) {
 }
 
 template <Objective kObjective>
-OCTAFRONT_INLINE void element_kernel(ShapeBatch& s, int n) {
+OCTAFRONT_KERNEL void element_kernel(ShapeBatch& s, int n) {
   for (int i = 0; i < n; ++i) {
     const Vec3 a{s.corner[0][0][i], s.corner[0][1][i], s.corner[0][2][i]};
     const Vec3 b{s.corner[1][0][i], s.corner[1][1][i], s.corner[1][2][i]};
@@ -151,16 +136,16 @@ struct Float3 {
   float x, y, z;
 };
 
-OCTAFRONT_INLINE Float3 cross(Float3 a, Float3 b) {
+OCTAFRONT_KERNEL Float3 cross(Float3 a, Float3 b) {
   return {a.y * b.z - a.z * b.y, a.z * b.x - a.x * b.z, a.x * b.y - a.y * b.x};
 }
-OCTAFRONT_INLINE float dot(Float3 a, Float3 b) {
+OCTAFRONT_KERNEL float dot(Float3 a, Float3 b) {
   return a.x * b.x + a.y * b.y + a.z * b.z;
 }
 
 constexpr float kTinyFloat = 1e-30f;
 
-OCTAFRONT_INLINE float lack_of_edges(Float3 u, Float3 v, Float3 w) {
+OCTAFRONT_KERNEL float lack_of_edges(Float3 u, Float3 v, Float3 w) {
   const Float3 b = cross(v, w), c = cross(w, u), d = cross(u, v), a{b.x + c.x + d.x, b.y + c.y + d.y, b.z + c.z + d.z};
   const float uu = dot(u, u), vv = dot(v, v), ww = dot(w, w);
   const Float3 center{uu * b.x + vv * c.x + ww * d.x, uu * b.y + vv * c.y + ww * d.y, uu * b.z + vv * c.z + ww * d.z};
@@ -174,7 +159,7 @@ OCTAFRONT_INLINE float lack_of_edges(Float3 u, Float3 v, Float3 w) {
 }  // namespace
 
 struct SketchKernel {
-  static OCTAFRONT_INLINE void run(StarSketch& s, Float3 apex) {
+  static OCTAFRONT_KERNEL void run(StarSketch& s, Float3 apex) {
     const auto edge = [&](int k, int i) {
       return Float3{s.corner_[k][0][i] - apex.x, s.corner_[k][1][i] - apex.y, s.corner_[k][2][i] - apex.z};
     };
@@ -201,7 +186,7 @@ void sketch_plain(StarSketch& s, Float3 apex) {
   SketchKernel::run(s, apex);
 }
 
-#if defined(__x86_64__) && defined(__GNUC__)
+#ifdef OCTAFRONT_HAS_AVX2_KERNELS
 template <Objective kObjective>
 __attribute__((target("avx2"))) void star_avx2(ShapeBatch& s, Vec3 apex, int n) {
   star_kernel<kObjective>(s, apex, n);
@@ -212,11 +197,6 @@ __attribute__((target("avx2"))) void elements_avx2(ShapeBatch& s, int n) {
 }
 __attribute__((target("avx2"))) void sketch_avx2(StarSketch& s, Float3 apex) {
   SketchKernel::run(s, apex);
-}
-
-bool has_avx2() {
-  __builtin_cpu_init();
-  return __builtin_cpu_supports("avx2");
 }
 
 template <Objective kObjective>
