@@ -112,11 +112,13 @@ struct AdaptedSurface {
 /// The same of triangles alone, open or closed, any number of them at an edge; repair_surface() tidies them first, so
 /// that vertices at one place are one. Patches, the regions on both sides, lines where the surface bends, ends or meets
 /// others, and corners stay; `source` does not. `options.adapt.only` is refused. Passes run on one thread. Throws
-/// InputError for indices out of range, coordinates that are not finite, no triangles; OptionError, Cancelled.
+/// InputError for indices out of range, coordinates that are not finite, no triangles; OptionError, Cancelled. `sets`:
+/// those of its file; vertices of corners and of what is required (kMeditSets) stay.
 AdaptedSurface adapt_surface(const SurfaceMesh& mesh, const Options& options, const RunContext& context = {},
-                             const Domain* surface = nullptr);
+                             const Domain* surface = nullptr, std::span<const PlacedSet> sets = {});
 AdaptedSurface adapt_surface_to_metric(const SurfaceMesh& mesh, const MetricMesh& metric, const Options& options = {},
-                                       const RunContext& context = {}, const Domain* surface = nullptr);
+                                       const RunContext& context = {}, const Domain* surface = nullptr,
+                                       std::span<const PlacedSet> sets = {});
 
 /// The field on the mesh that was made of `before`. At vertices: linear in the old element that holds the new vertex
 /// (exact for linear functions); where a vertex is where it was, its bits. Of elements: the mean over what the new

@@ -5,6 +5,7 @@
 #include <octafront/image_surface.h>
 #include <octafront/inside.h>
 #include <octafront/mend.h>
+#include <octafront/named_groups.h>
 #include <octafront/no_context.h>
 #include <octafront/surface_mesh.h>
 
@@ -154,10 +155,15 @@ struct Domain {
   std::vector<LineNet> wires = {};
   std::vector<PointSet> points = {};
 
+  /// Of files: sets of nodes, edges and faces, which the mesh gets as far as its walls have them.
+  std::vector<PlacedSet> sets = {};
+
   /// Of CAD: what the triangles stand for; the patches of the surface are its patches. Vertices of the mesh lie on it.
   std::shared_ptr<const TrueGeometry> geometry = {};
   /// Of CAD: the volumes of the regions by it, which those of the mesh must meet. Empty: not known.
   std::vector<double> true_volumes = {};
+  /// Of CAD, per region: chords no deeper than this keep its volume within a percent, about. Empty: not known.
+  std::vector<double> chord_depths = {};
 
   /// Voxels of the image along i, j and k, as they were taken.
   std::array<std::uint32_t, 3> voxels = {0, 0, 0};
@@ -171,7 +177,8 @@ struct Domain {
 };
 
 /// What is known of a domain but for its triangles, as one JSON object with the keys of the command line's report:
-/// "repair" (of one part: "repair PART"), "input_regions", "dropped_sheet_faces", each where there is something to say.
+/// "repair" (of one part: "repair PART"), "input_regions", "input_notes", "dropped_sheet_faces", each where there is
+/// something to say.
 std::string to_json(const Domain& domain);
 
 /// Opens a file, or several, a body each, whose regions get the names of the files. What read_surface() or read_image()

@@ -2,6 +2,7 @@
 
 #include <octafront/complex.h>
 #include <octafront/metric.h>
+#include <octafront/named_groups.h>
 #include <octafront/options.h>
 #include <octafront/run_context.h>
 #include <octafront/size_field.h>
@@ -28,6 +29,7 @@ struct SurfaceFile {
   std::vector<std::string> notes;        ///< what a user should know, e.g. "12 polygons divided into triangles"
   std::vector<RegionSeed> regions = {};  ///< of TetGen's .poly and .smesh, for ComplexOptions
   std::vector<Vec3> voids = {};          ///< the same: its holes
+  std::vector<PlacedSet> sets = {};      ///< of nodes, edges and faces
 };
 
 /// Reads STL (binary, ASCII), OBJ, OFF, PLY (ASCII, both binary byte orders), TetGen's .poly and .smesh, and meshes of
@@ -151,17 +153,17 @@ void check_text_target(const std::string& file);
 struct MeshFile {
   TetMesh mesh;
   std::string format;              ///< e.g. "Gmsh MSH 4.1"
-  std::vector<std::string> notes;  ///< what a user should know, e.g. "3 hexahedra were left out"
+  std::vector<std::string> notes;  ///< what a user should know, e.g. "12 elements of other kinds were left out"
   std::uint64_t turned = 0;        ///< tetrahedra that were inverted in the file, those of wedges and pyramids too
   std::uint64_t turned_wide = 0;   ///< wedges and pyramids that were
 };
 
 /// Reads a tetrahedral mesh, linear or of second order, with its groups, in any format of known_formats() that
 /// reads_mesh; recognised by content, the name breaks ties. Inverted elements are turned, wedges and pyramids divided
-/// into tetrahedra (TetMesh::wide_cells), other kinds of elements and unused vertices left out, a boundary face that
-/// the file lacks is added, and faces inside that the file has become interfaces. Groups of elements that overlap no
-/// earlier one become regions (of faces: patches, of edges: curves), others sets. Throws InputError; memory is bounded
-/// by a small multiple of the size of the file.
+/// into tetrahedra (TetMesh::wide_cells), so are hexahedra, other kinds of elements and unused vertices left out, a
+/// boundary face that the file lacks is added, and faces inside that the file has become interfaces. Groups of elements
+/// that overlap no earlier one become regions (of faces: patches, of edges: curves), others sets. Throws InputError;
+/// memory is bounded by a small multiple of the size of the file.
 MeshFile read_mesh_file(const std::string& file, const RunContext& context = {});
 /// The mesh alone.
 TetMesh read_mesh(const std::string& file, const RunContext& context = {});

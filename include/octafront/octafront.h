@@ -15,6 +15,7 @@
 #include <octafront/image_surface.h>
 #include <octafront/improve_existing.h>
 #include <octafront/io.h>
+#include <octafront/limits.h>
 #include <octafront/mend.h>
 #include <octafront/mesh_field.h>
 #include <octafront/metric.h>
@@ -27,6 +28,7 @@
 #include <octafront/repair.h>
 #include <octafront/report.h>
 #include <octafront/report_page.h>
+#include <octafront/requirement_error.h>
 #include <octafront/run_context.h>
 #include <octafront/second_order.h>
 #include <octafront/share_files.h>

@@ -124,9 +124,12 @@ struct SurfaceOptions {
   /// Each part of the surface that feature edges enclose becomes a patch of its own; parts of a named patch keep its
   /// name, with a number behind it where there are several.
   bool patches_by_features = false;
-  /// Regions of a complex get the volumes that they have in the input: vertices inside patches move off the surface by
-  /// what chords cut off, at most a fifth of an edge. For images of labels.
+  /// Bodies and regions of a complex get the volumes that they have in the input: vertices inside patches move off the
+  /// surface by what chords cut off, at most a fifth of an edge; what they do not get is said by region.
   bool keep_volumes = false;
+  /// Percent by which chords may change the volume of each region, of second order curved edges: where one is off by
+  /// more, elements are made smaller, for a few rounds. > 0. Without a value volumes are what the sizes make them.
+  std::optional<double> volume_tolerance;
 };
 
 /// Boundary layers: thin elements along walls, which grow from them.
@@ -189,8 +192,11 @@ struct ImproveOptions {
   double relaxation = 0.7;  ///< phi of the paper's weighted Laplacian, (0, 1]
   int sweeps = 4;           ///< sweeps of the Laplacian, >= 0
   /// Vertices of the boundary may slide along the input surface, and edges inside its patches turn. Off wherever the
-  /// surface is kept.
+  /// surface is kept. adapt_existing(): off, the triangles of the outer boundary stay as they are.
   bool move_boundary = true;
+  /// Elements with all four corners on walls (boundary, interfaces) get a vertex inside at the end, for a problem with
+  /// its values given there would know nothing of them. generate(), adapt_existing(), adapt_to_metric().
+  bool no_bridging = false;
   /// Wall time, >= 0: the pass that is under way when it is over is finished, the rest left out. A run that it cuts
   /// short is valid, but no longer the same on every machine; the report says so. Without a value the schedule runs to
   /// its end.
@@ -221,6 +227,22 @@ struct AdaptOptions {
   /// for the elements that touch it. Empty: all may change.
   std::string only;
   int halo = 2;  ///< layers of elements around these places that may change, too; 0 to 100
+  /// What stays as it is, with semicolons between: names of patches, curves and sets of nodes, edges and
+  /// faces; of a region or a set of elements the walls around it; a patch also by its number, from 1. Vertices keep
+  /// their places; of sets RequiredVertices, RequiredEdges, RequiredTriangles, RequiredTetrahedra and Corners, as MEDIT
+  /// has them, in any case. Lengths grow from what stays.
+  std::string keep;
+};
+
+/// What a mesh must keep: one that does not is not handed out, RequirementError says what it is like. Looked at last,
+/// on all elements that there are.
+struct RequireOptions {
+  /// Percent by which the volume of each region may differ from what it is in the input, >= 0: relative to the region
+  /// itself; of a CAD solid its true volume; of curved elements as they are curved.
+  std::optional<double> volume;
+  std::optional<double> angle;  ///< degrees that each dihedral angle of each element has at least, in (0, 70]
+  /// Times the size wanted at its middle that each edge may be long, >= 1.
+  std::optional<double> size;
 };
 
 /// Everything that steers generate().
@@ -232,6 +254,7 @@ struct Options {
   VolumeOptions volume;
   ImproveOptions improve;
   AdaptOptions adapt;
+  RequireOptions require;
   /// Names of patches inside (sheets, walls between regions), separated by commas, along which the mesh is opened:
   /// split_patches() of octafront/split.h.
   std::string split;

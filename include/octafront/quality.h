@@ -26,9 +26,10 @@ struct QualitySummary {
   /// Elements with beta in the paper's classes [0, .2) [.2, .4) [.4, .6) [.6, .8) [.8, 1].
   std::array<std::uint64_t, 5> beta_classes{};
   double beta_mean = 0, beta_min = 0;
-  TetIndex beta_min_tet = kNone;
-  double dihedral_min = 0, dihedral_max = 0;           ///< degrees, over all elements
-  std::array<std::uint64_t, 18> dihedral_histogram{};  ///< all six angles of all elements, classes of 10 degrees
+  TetIndex beta_min_tet = kNone, dihedral_min_tet = kNone;  ///< of equal ones the first
+  Vec3 beta_min_at, dihedral_min_at;                        ///< the means of their corners
+  double dihedral_min = 0, dihedral_max = 0;                ///< degrees, over all elements
+  std::array<std::uint64_t, 18> dihedral_histogram{};       ///< all six angles of all elements, classes of 10 degrees
 };
 
 QualitySummary summarize_quality(const TetMesh& mesh);

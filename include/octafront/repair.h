@@ -1,10 +1,12 @@
 #pragma once
 
+#include <octafront/error.h>
 #include <octafront/no_context.h>
 #include <octafront/surface_mesh.h>
 
 #include <cstdint>
 #include <string>
+#include <utility>
 #include <vector>
 
 namespace octafront {
@@ -63,6 +65,14 @@ struct SurfaceDefects {
   bool clean() const;
   /// A paragraph for each kind: count, first places with face ids and coordinates, what to do. Empty if clean.
   std::string describe() const;
+};
+
+/// A surface is refused for its defects.
+class DefectsError : public InputError {
+ public:
+  explicit DefectsError(SurfaceDefects found) : DefectsError(found.describe(), std::move(found)) {}
+  DefectsError(const std::string& what, SurfaceDefects found) : InputError(what), defects(std::move(found)) {}
+  SurfaceDefects defects;
 };
 
 /// A complex is clean if its triangles meet in shared vertices and edges only, and the regions on their sides agree:

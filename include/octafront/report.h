@@ -6,11 +6,21 @@
 #include <octafront/solver_checks.h>
 
 #include <cstdint>
+#include <optional>
 #include <string>
 #include <utility>
 #include <vector>
 
 namespace octafront {
+
+/// A note with what programs want to know of it.
+struct Finding {
+  std::string code;    ///< of its kind, the same in all versions: docs/use/command-line.md lists them
+  std::string text;    ///< the note, a sentence for the user
+  std::string region;  ///< that it is about; empty: none, or all
+  std::vector<std::pair<std::string, double>> values = {};  ///< e.g. {"change_percent", -49.1}, in a fixed order
+  std::optional<Vec3> at = {};                              ///< the place, where it is one; input units
+};
 
 /// What one stage did: its time, and counters that do not jitter between runs.
 struct StageReport {
@@ -19,8 +29,13 @@ struct StageReport {
   double cpu_seconds = 0;                                ///< user and system time of the whole process during the stage
   std::vector<std::pair<std::string, double>> counters;  ///< e.g. {"candidates tried", 1.2e6}, in a fixed order
   std::vector<std::string> notes;  ///< sentences for the user; fields of Options in backquotes: "lower `max_size`"
+  std::vector<Finding> findings;   ///< those of the notes that have a code
 
   void count(std::string key, double value) { counters.emplace_back(std::move(key), value); }
+  void note(Finding finding) {
+    notes.push_back(finding.text);
+    findings.push_back(std::move(finding));
+  }
 };
 
 /// Edge lengths made over edge lengths wanted (size field at the middle of the edge), over all edges of a mesh.
@@ -35,6 +50,7 @@ struct RegionSummary {
   std::string name;          ///< may be empty
   double volume = 0;         ///< input unit cubed; of curved elements as they are curved, where `true_volume` is known
   double layers_volume = 0;  ///< of the boundary layers in it, which are a region of their own
+  double input_volume = 0;   ///< of the input's region of this name; 0: not known
   double true_volume = 0;    ///< of the CAD solid; 0: not known
   QualitySummary quality;
 };

@@ -31,6 +31,8 @@ struct SurfaceMesh {
   /// Numbers that regions have where they come from: labels of an image; region r is label region_labels[r]. Empty:
   /// they have none.
   std::vector<std::int64_t> region_labels = {};
+  /// The same of patches, such as the reference numbers of a file. Patches that have none count on behind the largest.
+  std::vector<std::int64_t> patch_labels = {};
 
   std::uint32_t patch_of(std::size_t triangle) const { return patch.empty() ? 0 : patch[triangle]; }
   std::uint32_t source_of(std::size_t triangle) const {

@@ -85,6 +85,8 @@ struct TetMesh {
   std::vector<std::uint32_t> region;        ///< one per tet: number of the body it lies in; empty: all 0
   std::vector<std::string> region_names;    ///< region r is region_names[r]; may be shorter than the number of regions
   std::vector<std::int64_t> region_labels;  ///< as in SurfaceMesh
+  std::vector<std::int64_t> patch_labels;   ///< the same
+  std::vector<std::int64_t> curve_labels;   ///< the same, of curves
   std::vector<Triangle> boundary;           ///< the boundary faces, counter-clockwise seen from outside
   std::vector<std::uint32_t> patch;         ///< one per boundary face: its patch; empty: all 0
   std::vector<std::uint32_t> source;     ///< one per boundary face: the input face nearest to it, or it; kNone: none,

@@ -5,8 +5,10 @@
 
 #include <octafront/surface_mesh.h>
 
+#include <array>
 #include <cstdint>
 #include <string>
+#include <vector>
 
 namespace octafront::testing {
 
@@ -33,5 +35,10 @@ enum class Pinches { kKept, kFilled };
 /// The boundary of a set of unit cubes of an n x n x n grid, each present with the probability `density`. Vertices move
 /// by up to `jitter`.
 SurfaceMesh random_voxels(int n, double density, double jitter, Pinches pinches, std::uint64_t seed);
+
+/// The boundary of some unit cubes of an n x n x n grid, facing outward; it may touch itself in edges and vertices.
+SurfaceMesh boundary_of_cubes(int n, const std::vector<std::array<int, 3>>& cubes);
+/// All cubes of the grid but for these.
+std::vector<std::array<int, 3>> all_cubes_but(int n, const std::vector<std::array<int, 3>>& gaps);
 
 }  // namespace octafront::testing

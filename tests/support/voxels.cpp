@@ -20,6 +20,9 @@ class Voxels {
     for (std::size_t i = 0; i < full_.size(); ++i) full_[i] = random.unit() < density;
     full_[0] = true;
   }
+  Voxels(int n, const std::vector<Cell>& cubes) : n_(n), full_(static_cast<std::size_t>(n * n * n)) {
+    for (const Cell& c : cubes) full_[index(c)] = true;
+  }
   int cells() const { return n_ * n_ * n_; }
   Cell cell(int i) const { return {i % n_, i / n_ % n_, i / (n_ * n_)}; }
   bool filled(Cell c) const { return inside(c) && full_[index(c)]; }
@@ -91,12 +94,8 @@ std::array<Cell, 4> side_of(Cell c, int axis, int side) {
   return q;
 }
 
-}  // namespace
-
-SurfaceMesh random_voxels(int n, double density, double jitter, Pinches pinches, std::uint64_t seed) {
-  Random random(seed);
-  Voxels voxels(n, density, random);
-  if (pinches == Pinches::kFilled) voxels.fill_pinches();
+/// Sides of two triangles each, divided along either diagonal by chance.
+SurfaceMesh boundary_of(const Voxels& voxels, double jitter, Random& random) {
   SurfaceMesh s;
   std::map<Cell, VertexIndex> index;
   const auto vertex = [&](Cell g) {
@@ -126,6 +125,29 @@ SurfaceMesh random_voxels(int n, double density, double jitter, Pinches pinches,
     }
   }
   return s;
+}
+
+}  // namespace
+
+SurfaceMesh random_voxels(int n, double density, double jitter, Pinches pinches, std::uint64_t seed) {
+  Random random(seed);
+  Voxels voxels(n, density, random);
+  if (pinches == Pinches::kFilled) voxels.fill_pinches();
+  return boundary_of(voxels, jitter, random);
+}
+
+SurfaceMesh boundary_of_cubes(int n, const std::vector<std::array<int, 3>>& cubes) {
+  Random random(1);
+  return boundary_of(Voxels(n, cubes), 0, random);
+}
+
+std::vector<std::array<int, 3>> all_cubes_but(int n, const std::vector<std::array<int, 3>>& gaps) {
+  std::vector<std::array<int, 3>> cubes;
+  for (int z = 0; z < n; ++z)
+    for (int y = 0; y < n; ++y)
+      for (int x = 0; x < n; ++x)
+        if (std::find(gaps.begin(), gaps.end(), Cell{x, y, z}) == gaps.end()) cubes.push_back({x, y, z});
+  return cubes;
 }
 
 }  // namespace octafront::testing

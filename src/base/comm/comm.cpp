@@ -1,5 +1,7 @@
 #include "base/comm/comm.h"
 
+#include <octafront/limits.h>
+
 #include <algorithm>
 #include <chrono>
 #include <cstring>
@@ -75,6 +77,8 @@ Told told_of(const std::exception_ptr& error) {
     return {FailureKind::kOutput, e.what()};
   } catch (const Cancelled& e) {
     return {FailureKind::kCancelled, e.what()};
+  } catch (const LimitError& e) {
+    return {FailureKind::kMemory, e.what()};
   } catch (const std::bad_alloc&) {
     return {FailureKind::kMemory, "out of memory"};
   } catch (const std::exception& e) {

@@ -1,4 +1,5 @@
 #include <octafront/error.h>
+#include <octafront/limits.h>
 #include <octafront/no_context.h>
 #include <octafront/run_context.h>
 
@@ -6,6 +7,7 @@ namespace octafront {
 
 void RunContext::check() const {
   if (cancelled()) throw Cancelled();
+  check_cpu_seconds();
 }
 
 const RunContext& no_context() {

@@ -12,4 +12,8 @@ void Stage::note(std::string sentence) const {
   report_.notes.push_back(std::move(sentence));
 }
 
+void Stage::note(Finding finding) const {
+  report_.note(std::move(finding));
+}
+
 }  // namespace octafront

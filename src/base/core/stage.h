@@ -20,6 +20,8 @@ class Stage {
   void count(std::string key, double value) const;
   /// A sentence for the user.
   void note(std::string sentence) const;
+  /// The same with a code and values for programs.
+  void note(Finding finding) const;
 
   const RunContext& context() const { return context_; }
   StageReport& report() const { return report_; }

@@ -186,6 +186,9 @@ TriangleTree::Nearest TriangleTree::nearest(Vec3 p, double limit_squared) const 
       best.squared_distance, [p](const Box3& box) { return squared_distance(p, box); },
       [&](const Node& leaf) {
         for (std::uint32_t i = leaf.first; i < leaf.first + leaf.count; ++i) {
+          // Boxes cost a third of what triangles do.
+          constexpr double kRounding = 1 - 1e-12;
+          if (kRounding * squared_distance(p, box_of(items_[i].corners)) > best.squared_distance) continue;
           const auto& [a, b, c] = items_[i].corners;
           const Vec3 q = closest_point_on_triangle(p, a, b, c);
           const double d = squared_distance(p, q);

@@ -72,6 +72,26 @@ std::uint32_t region_count(const SurfaceMesh& complex) {
   return count;
 }
 
+std::vector<double> volumes_of_regions(const SurfaceMesh& complex) {
+  std::vector<double> volumes(region_count(complex), 0);
+  // Each is measured from a vertex of its own.
+  std::vector<VertexIndex> from(volumes.size(), kNone);
+  for (std::size_t t = 0; t < complex.triangles.size(); ++t) {
+    const auto& [a, b, c] = complex.triangles[t];
+    const auto [front, behind] = complex.sides_of(t);
+    if (front == behind) continue;
+    const auto add = [&](std::uint32_t region, double sign) {
+      if (region == kNone) return;
+      if (from[region] == kNone) from[region] = a;
+      const Vec3 o = complex.points[from[region]];
+      const Vec3 p = complex.points[a] - o, q = complex.points[b] - o, r = complex.points[c] - o;
+      volumes[region] += sign * dot(p, cross(q, r)) / 6;
+    };
+    add(behind, 1), add(front, -1);
+  }
+  return volumes;
+}
+
 std::string region_name(const SurfaceMesh& complex, std::uint32_t region) {
   if (region < complex.region_names.size() && !complex.region_names[region].empty())
     return complex.region_names[region];
@@ -105,6 +125,7 @@ SurfaceMesh boundary_of_region(const SurfaceMesh& complex, std::uint32_t region)
 
 void list_faces(const SurfaceMesh& complex, TetMesh& mesh) {
   mesh.patch_names = complex.patch_names;
+  mesh.patch_labels = complex.patch_labels;
   if (complex.sides.empty()) {
     mesh.boundary = complex.triangles;
     mesh.patch = complex.patch;

@@ -25,6 +25,10 @@ void face_lower_regions_behind(SurfaceMesh& complex);
 /// One more than the largest number of a region.
 std::uint32_t region_count(const SurfaceMesh& complex);
 
+/// What each region encloses, by number; of a surface without `sides` that of its one region. Small ones keep their
+/// digits however far away the others are. Unit: input unit cubed.
+std::vector<double> volumes_of_regions(const SurfaceMesh& complex);
+
 /// The name of a region, or "region 3" for the third where it has none.
 std::string region_name(const SurfaceMesh& complex, std::uint32_t region);
 

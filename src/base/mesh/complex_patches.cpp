@@ -3,6 +3,7 @@
 #include <octafront/surface_mesh.h>
 
 #include "base/mesh/complex.h"
+#include "base/mesh/labels.h"
 
 #include <map>
 #include <utility>
@@ -32,11 +33,13 @@ void divide_by_sides(SurfaceMesh& complex) {
   for (const auto& [key, triangle] : first) in_order[{key.first, triangle}] = key;
   std::map<Key, std::uint32_t> number;
   std::vector<std::string> names;
+  std::vector<std::int64_t> labels;
   for (const auto& [place, key] : in_order) {
     const auto& [patch, sides] = key;
     number[key] = static_cast<std::uint32_t>(names.size());
     const std::string given = patch < complex.patch_names.size() ? complex.patch_names[patch] : std::string();
     const std::string by_sides = name_of_sides(complex, sides);
+    if (!complex.patch_labels.empty()) labels.push_back(label_at(complex.patch_labels, patch));
     names.push_back(given.empty() ? by_sides : pairs[patch] == 1 ? given : fmt::format("{} ({})", given, by_sides));
   }
   std::vector<std::uint32_t> patch;
@@ -44,6 +47,7 @@ void divide_by_sides(SurfaceMesh& complex) {
     patch.push_back(number[{complex.patch_of(t), complex.sides[t]}]);
   complex.patch = std::move(patch);
   complex.patch_names = std::move(names);
+  complex.patch_labels = std::move(labels);
 }
 
 }  // namespace octafront

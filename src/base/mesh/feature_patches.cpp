@@ -2,6 +2,8 @@
 
 #include <octafront/surface_mesh.h>
 
+#include "base/mesh/labels.h"
+
 #include <algorithm>
 
 #include <fmt/core.h>
@@ -55,6 +57,14 @@ std::vector<std::string> names_of(const SurfaceMesh& surface, const std::vector<
   return names;
 }
 
+/// Each part keeps the number of its patch.
+std::vector<std::int64_t> labels_of(const SurfaceMesh& surface, const std::vector<std::uint32_t>& part,
+                                    std::uint32_t parts) {
+  std::vector<std::int64_t> labels(parts);
+  for (std::size_t t = 0; t < part.size(); ++t) labels[part[t]] = label_at(surface.patch_labels, surface.patch_of(t));
+  return labels;
+}
+
 }  // namespace
 
 std::uint32_t divide_into_patches(SurfaceMesh& surface, const EdgeTable& edges, const Features& features) {
@@ -62,6 +72,7 @@ std::uint32_t divide_into_patches(SurfaceMesh& surface, const EdgeTable& edges, 
   std::uint32_t parts = 0;
   const std::vector<std::uint32_t> part = parts_between_features(surface, edges, features, parts);
   if (!surface.patch_names.empty()) surface.patch_names = names_of(surface, part, parts);
+  if (!surface.patch_labels.empty()) surface.patch_labels = labels_of(surface, part, parts);
   surface.patch = part;
   return parts;
 }

@@ -8,6 +8,7 @@
 #include <charconv>
 #include <cstring>
 #include <map>
+#include <optional>
 #include <span>
 #include <unordered_map>
 
@@ -79,8 +80,8 @@ std::vector<std::uint32_t> members_of_patches(const TetMesh& mesh, const std::ve
   return members;
 }
 
-/// From the vertices of one mesh to those at the same coordinates in another one; kNone where there is none.
-std::vector<VertexIndex> same_places(const TetMesh& from, const TetMesh& to) {
+/// Per place the vertex of a mesh that is at the same coordinates; kNone where there is none.
+std::vector<VertexIndex> same_places(std::span<const Vec3> from, const TetMesh& to) {
   struct Hash {
     std::size_t operator()(const std::array<double, 3>& p) const {
       std::uint64_t hash = 0;
@@ -99,8 +100,8 @@ std::vector<VertexIndex> same_places(const TetMesh& from, const TetMesh& to) {
   at.reserve(to.points.size());
   for (VertexIndex v = 0; v < to.points.size(); ++v) at.emplace(key(to.points[v]), v);
   std::vector<VertexIndex> place;
-  place.reserve(from.points.size());
-  for (const Vec3& p : from.points) {
+  place.reserve(from.size());
+  for (const Vec3& p : from) {
     const auto found = at.find(key(p));
     place.push_back(found == at.end() ? kNone : found->second);
   }
@@ -109,11 +110,13 @@ std::vector<VertexIndex> same_places(const TetMesh& from, const TetMesh& to) {
 
 class Carrying {
  public:
-  Carrying(const TetMesh& before, TetMesh& mesh) : before_(before), mesh_(mesh), place_(same_places(before, mesh)) {}
+  Carrying(const TetMesh& before, TetMesh& mesh)
+      : before_(before), mesh_(mesh), place_(same_places(before.points, mesh)) {}
 
   std::vector<std::string> result() {
     mesh_.region_names = before_.region_names;
     mesh_.curve_names = before_.curve_names;
+    mesh_.curve_labels = before_.curve_labels;
     carry_interfaces();
     carry_curves();
     find_boundary();
@@ -193,7 +196,11 @@ class Carrying {
   void carry_set(const NamedSet& set) {
     NamedSet kept{set.name, set.kind, {}};
     if (set.kind == Kind::kElements) {
-      if (mesh_.tets == before_.tets) kept.members = set.members;
+      if (mesh_.tets == before_.tets) {
+        kept.members = set.members;
+      } else if (medit_set(set) != nullptr) {
+        kept.members = same_tets(set.members);
+      }
     } else {
       for (const std::uint32_t m : set.members) {
         const std::uint32_t to = carried(set.kind, m);
@@ -204,6 +211,24 @@ class Carrying {
     kept.members.erase(std::unique(kept.members.begin(), kept.members.end()), kept.members.end());
     lose(set.members.size() - kept.members.size(), fmt::format("members of the set \"{}\"", set.name));
     if (!kept.members.empty()) mesh_.sets.push_back(std::move(kept));
+  }
+
+  /// The elements that are where those were.
+  std::vector<std::uint32_t> same_tets(const std::vector<std::uint32_t>& members) const {
+    std::vector<Tet> wanted;
+    for (const std::uint32_t m : members)
+      if (Tet t = before_.tets[m]; moved(t)) {
+        std::sort(t.begin(), t.end());
+        wanted.push_back(t);
+      }
+    std::sort(wanted.begin(), wanted.end());
+    std::vector<std::uint32_t> found;
+    for (std::uint32_t t = 0; t < mesh_.tets.size(); ++t) {
+      Tet key = mesh_.tets[t];
+      std::sort(key.begin(), key.end());
+      if (std::binary_search(wanted.begin(), wanted.end(), key)) found.push_back(t);
+    }
+    return found;
   }
 
   std::uint32_t carried(Kind kind, std::uint32_t m) const {
@@ -226,7 +251,147 @@ class Carrying {
   std::vector<std::string> notes_;
 };
 
+/// Adds sets whose members are at given places.
+class Placing {
+ public:
+  explicit Placing(TetMesh& mesh) : mesh_(mesh) {}
+
+  /// Adds what the mesh has of a set; returns how many members it lacks.
+  std::size_t add(const PlacedSet& placed) {
+    NamedSet set{placed.name, placed.kind, {}};
+    const std::vector<VertexIndex> at = same_places(placed.places, mesh_);
+    const std::size_t each = placed.each(), wanted = at.size() / each;
+    for (std::size_t i = 0; i < wanted; ++i) {
+      const std::span<const VertexIndex> vertices = std::span(at).subspan(each * i, each);
+      const bool is_there = std::find(vertices.begin(), vertices.end(), kNone) == vertices.end();
+      if (const std::uint32_t m = is_there ? member(vertices) : kNone; m != kNone) set.members.push_back(m);
+    }
+    const std::size_t lacks = wanted - set.members.size();
+    std::sort(set.members.begin(), set.members.end());
+    set.members.erase(std::unique(set.members.begin(), set.members.end()), set.members.end());
+    if (!set.members.empty() && (lacks == 0 || medit_set(set) != nullptr)) mesh_.sets.push_back(std::move(set));
+    return lacks;
+  }
+
+ private:
+  std::uint32_t member(std::span<const VertexIndex> vertices) {
+    if (vertices.size() == 1) return vertices[0];
+    return vertices.size() == 2 ? edge(vertices[0], vertices[1]) : face({vertices[0], vertices[1], vertices[2]});
+  }
+
+  std::uint32_t face(const Triangle& triangle) {
+    if (!table_) {
+      faces_ = mesh_.boundary;
+      faces_.insert(faces_.end(), mesh_.interfaces.begin(), mesh_.interfaces.end());
+      table_.emplace(face_table(mesh_.points.size(), faces_));
+    }
+    const auto group = table_->group_of(triangle);
+    return group.empty() ? kNone : group.front().face;
+  }
+
+  /// An edge of the walls that is none of a curve becomes one.
+  std::uint32_t edge(VertexIndex a, VertexIndex b) {
+    if (edges_.empty()) list_edges();
+    const auto found = edges_.find({std::min(a, b), std::max(a, b)});
+    if (found == edges_.end()) return kNone;
+    if (found->second == kNone) {
+      found->second = static_cast<std::uint32_t>(mesh_.curve_edges.size());
+      mesh_.curve_edges.push_back({a, b});
+      mesh_.curve.resize(found->second, 0);
+      mesh_.curve.push_back(new_curve_);
+    }
+    return found->second;
+  }
+
+  void list_edges() {
+    for (const auto* faces : {&mesh_.boundary, &mesh_.interfaces})
+      for (const Triangle& t : *faces)
+        for (std::size_t i = 0; i < 3; ++i) {
+          const VertexIndex a = t[i], b = t[(i + 1) % 3];
+          edges_[{std::min(a, b), std::max(a, b)}] = kNone;
+        }
+    for (std::uint32_t e = 0; e < mesh_.curve_edges.size(); ++e) {
+      const auto& [a, b] = mesh_.curve_edges[e];
+      edges_[{std::min(a, b), std::max(a, b)}] = e;
+    }
+    new_curve_ = static_cast<std::uint32_t>(std::max(mesh_.curve_names.size(), mesh_.curve_labels.size()));
+    if (mesh_.curve.empty() && !mesh_.curve_edges.empty()) new_curve_ = std::max(new_curve_, 1u);
+    for (const std::uint32_t c : mesh_.curve) new_curve_ = std::max(new_curve_, c + 1);
+  }
+
+  TetMesh& mesh_;
+  std::vector<Triangle> faces_;
+  std::optional<FaceTable> table_;       ///< of faces_
+  std::map<Edge, std::uint32_t> edges_;  ///< of walls and curves, and their places among those of curves
+  std::uint32_t new_curve_ = 0;
+};
+
+std::vector<Vec3> places_of_members(const TetMesh& mesh, const NamedSet& set) {
+  std::vector<Vec3> places;
+  const auto add = [&](const auto& row) {
+    for (const VertexIndex v : row) places.push_back(mesh.points[v]);
+  };
+  for (const std::uint32_t m : set.members) {
+    if (set.kind == Kind::kNodes) places.push_back(mesh.points[m]);
+    if (set.kind == Kind::kEdges) add(mesh.curve_edges[m]);
+    if (set.kind == Kind::kFaces)
+      add(m < mesh.boundary.size() ? mesh.boundary[m] : mesh.interfaces[m - mesh.boundary.size()]);
+  }
+  return places;
+}
+
 }  // namespace
+
+const MeditSet* medit_set(const NamedSet& set) {
+  const auto is_it = [&](const MeditSet& known) { return known.name == set.name && known.kind == set.kind; };
+  const auto found = std::find_if(kMeditSets.begin(), kMeditSets.end(), is_it);
+  return found == kMeditSets.end() ? nullptr : &*found;
+}
+
+bool keeps_vertices(const PlacedSet& set) {
+  const MeditSet* const known = medit_set({set.name, set.kind, {}});
+  return known != nullptr && (known->is_required || known->kind == Kind::kNodes);
+}
+
+std::vector<VertexIndex> required_vertices(const TetMesh& mesh) {
+  std::vector<VertexIndex> all;
+  const auto add = [&](const auto& row) { all.insert(all.end(), row.begin(), row.end()); };
+  for (const NamedSet& set : mesh.sets) {
+    const MeditSet* const known = medit_set(set);
+    if (known == nullptr || !known->is_required) continue;
+    for (const std::uint32_t m : set.members) {
+      if (set.kind == Kind::kNodes) all.push_back(m);
+      if (set.kind == Kind::kEdges) add(mesh.curve_edges[m]);
+      if (set.kind == Kind::kFaces)
+        add(m < mesh.boundary.size() ? mesh.boundary[m] : mesh.interfaces[m - mesh.boundary.size()]);
+      if (set.kind == Kind::kElements) add(mesh.tets[m]);
+    }
+  }
+  std::sort(all.begin(), all.end());
+  all.erase(std::unique(all.begin(), all.end()), all.end());
+  return all;
+}
+
+std::vector<PlacedSet> placed_sets(const TetMesh& mesh) {
+  std::vector<PlacedSet> sets;
+  for (const NamedSet& set : mesh.sets)
+    if (set.kind != Kind::kElements) sets.push_back({set.name, set.kind, places_of_members(mesh, set)});
+  return sets;
+}
+
+std::string add_placed_sets(TetMesh& mesh, std::span<const PlacedSet> sets) {
+  Placing placing(mesh);
+  std::string missing;
+  for (const PlacedSet& set : sets)
+    if (const std::size_t lacks = placing.add(set); lacks > 0)
+      missing += fmt::format("{}\"{}\" ({} of {} {} missing)", missing.empty() ? "" : ", ", set.name, lacks,
+                             set.places.size() / set.each(),
+                             set.kind == Kind::kNodes   ? "nodes"
+                             : set.kind == Kind::kEdges ? "edges"
+                                                        : "faces");
+  return missing.empty() ? missing
+                         : "sets that the new mesh has not, or not whole, for it has other nodes there: " + missing;
+}
 
 std::string add_group(TetMesh& mesh, const GroupRule& rule) {
   NamedSet set{rule.name, rule.kind, {}};

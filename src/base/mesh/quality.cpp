@@ -86,6 +86,11 @@ void for_each_quality(const TetMesh& mesh, std::size_t begin, std::size_t end, c
   }
 }
 
+/// Of corners that are one point -1: nothing is worse.
+double beta_in(const QualityBatch& batch, int i) {
+  return std::isnan(batch.beta[i]) ? -1 : std::clamp(batch.beta[i], -1.0, 1.0);
+}
+
 // The sum over a stretch of elements; the extreme angles wait to be converted.
 struct Part {
   QualitySum sum;
@@ -95,7 +100,7 @@ struct Part {
 
   void add(const QualityBatch& batch, int i, TetIndex tet) {
     QualitySummary& s = sum.summary;
-    const double beta = std::min(1.0, batch.beta[i]);
+    const double beta = beta_in(batch, i);
     ++s.elements;
     sum.beta += std::llround(beta / QualitySum::kBetaUnit);
     ++s.beta_classes[static_cast<std::size_t>(std::clamp(static_cast<int>(beta * 5), 0, 4))];
@@ -103,17 +108,28 @@ struct Part {
       s.beta_min = beta;
       s.beta_min_tet = tet;
     }
-    for (int e = 0; e < 6; ++e) add({batch.x[e][i], batch.y[e][i]}, batch.step[e][i]);
+    for (int e = 0; e < 6; ++e) add_angle({batch.x[e][i], batch.y[e][i]}, batch.step[e][i], tet);
   }
-  void convert_angles() {
-    sum.summary.dihedral_min = degrees_of(least);
-    sum.summary.dihedral_max = degrees_of(most);
+  /// Extreme angles, and where the least ones are; its elements have numbers from `first_tet` on.
+  void finish(const TetMesh& mesh, std::uint64_t first_tet) {
+    QualitySummary& s = sum.summary;
+    s.dihedral_min = degrees_of(least);
+    s.dihedral_max = degrees_of(most);
+    s.beta_min_at = middle(mesh, s.beta_min_tet - first_tet);
+    // Without any angle, of corners that are one point, it is the first.
+    if (s.dihedral_min_tet == kNone) s.dihedral_min_tet = s.beta_min_tet;
+    s.dihedral_min_at = middle(mesh, s.dihedral_min_tet - first_tet);
   }
 
  private:
-  void add(const AngleDirection& angle, std::int32_t step) {
+  static Vec3 middle(const TetMesh& mesh, std::uint64_t t) {
+    const auto& [a, b, c, d] = mesh.tets[t];
+    return (mesh.points[a] + mesh.points[b] + mesh.points[c] + mesh.points[d]) / 4;
+  }
+  void add_angle(const AngleDirection& angle, std::int32_t step, TetIndex tet) {
     // Two steps away nothing is beyond.
-    if (step < least_step + 2 && angle.is_below(least)) least = angle, least_step = step;
+    if (step < least_step + 2 && angle.is_below(least))
+      least = angle, least_step = step, sum.summary.dihedral_min_tet = tet;
     if (step > most_step - 2 && most.is_below(angle)) most = angle, most_step = step;
     ++sum.summary.dihedral_histogram[classes->of(angle, step)];
   }
@@ -129,7 +145,7 @@ QualitySum summed(const TetMesh& mesh, std::size_t n, std::uint64_t first_tet, c
                      [&](const QualityBatch& batch, int i, TetIndex t) {
                        parts[block].add(batch, i, static_cast<TetIndex>(first_tet + t));
                      });
-    parts[block].convert_angles();
+    parts[block].finish(mesh, first_tet);
   });
   QualitySum whole;
   for (const Part& part : parts) whole.add(part.sum);
@@ -170,8 +186,13 @@ void QualitySum::add(const QualitySum& more) {
   if (std::pair(part.beta_min, part.beta_min_tet) < std::pair(summary.beta_min, summary.beta_min_tet)) {
     summary.beta_min = part.beta_min;
     summary.beta_min_tet = part.beta_min_tet;
+    summary.beta_min_at = part.beta_min_at;
   }
-  summary.dihedral_min = std::min(summary.dihedral_min, part.dihedral_min);
+  if (std::pair(part.dihedral_min, part.dihedral_min_tet) < std::pair(summary.dihedral_min, summary.dihedral_min_tet)) {
+    summary.dihedral_min = part.dihedral_min;
+    summary.dihedral_min_tet = part.dihedral_min_tet;
+    summary.dihedral_min_at = part.dihedral_min_at;
+  }
   summary.dihedral_max = std::max(summary.dihedral_max, part.dihedral_max);
 }
 
@@ -227,8 +248,7 @@ std::vector<PoorElement> worst_elements(const TetMesh& mesh, std::size_t count) 
   auto all = parallel_collect<Candidate>(
       mesh.tets.size(), kRange, [&](std::size_t begin, std::size_t end, std::vector<Candidate>& found) {
         for_each_quality(mesh, begin, end, number, [&](const QualityBatch& batch, int i, TetIndex t) {
-          const double beta = std::clamp(batch.beta[i], -1.0, 1.0);
-          found.push_back({std::isnan(beta) ? -1 : beta, t});
+          found.push_back({beta_in(batch, i), t});
         });
         keep_least(found);
       });

@@ -67,6 +67,24 @@ TEST(ComplexFaces, AMeshGetsItsRegionsFromTheSidesOfItsFaces) {
   EXPECT_EQ(first_defect(m, two_tets()), std::nullopt);
 }
 
+TEST(ComplexFaces, SmallRegionsKeepTheDigitsOfTheirVolumes) {
+  const Vec3 far{1e6, -2e6, 3e6};
+  SurfaceMesh two = testing::transformed(testing::cube(), 1e6, {});
+  two.sides.assign(two.triangles.size(), {kNone, 0});
+  const SurfaceMesh small = testing::transformed(testing::cube(), 0.25, far);
+  const auto first = static_cast<VertexIndex>(two.points.size());
+  two.points.insert(two.points.end(), small.points.begin(), small.points.end());
+  for (const auto& [a, b, c] : small.triangles) {
+    two.triangles.push_back({first + a, first + b, first + c});
+    two.sides.push_back({kNone, 1});
+  }
+  const std::vector<double> volumes = volumes_of_regions(two);
+  ASSERT_EQ(volumes.size(), 2u);
+  EXPECT_NEAR(volumes[0], 1e18, 1e3);
+  EXPECT_NEAR(volumes[1], 1.0 / 64, 1e-15);
+  EXPECT_NEAR(volumes_of_regions(testing::cube())[0], 1, 1e-15) << "without sides there is one region";
+}
+
 TEST(ComplexFaces, RegionsThatLeakAreFound) {
   SurfaceMesh open = two_tets();
   open.triangles.erase(open.triangles.begin());

@@ -71,6 +71,10 @@ TEST(SummarizeQuality, CountsEveryElementOnce) {
   EXPECT_EQ(std::accumulate(s.dihedral_histogram.begin(), s.dihedral_histogram.end(), std::uint64_t{0}), 120000u);
   EXPECT_EQ(s.beta_classes[0], 1u);
   EXPECT_EQ(s.beta_min_tet, 12345u);
+  EXPECT_EQ(s.dihedral_min_tet, 12345u);
+  const Vec3 middle = (mesh.points[0] + mesh.points[1] + mesh.points[2] + mesh.points[4]) / 4;
+  EXPECT_EQ(s.beta_min_at, middle);
+  EXPECT_EQ(s.dihedral_min_at, middle);
   EXPECT_EQ(s.beta_min, radius_ratio(mesh.points[0], mesh.points[1], mesh.points[2], mesh.points[4]));
   const double sum = 19999 * radius_ratio(kUnit[0], kUnit[1], kUnit[2], kUnit[3]) + s.beta_min;
   EXPECT_NEAR(s.beta_mean, sum / 20000, QualitySum::kBetaUnit);

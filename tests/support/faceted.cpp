@@ -1,0 +1,88 @@
+#include "support/faceted.h"
+
+#include <cmath>
+#include <utility>
+#include <vector>
+
+namespace octafront::testing {
+namespace {
+
+const double kPi = std::acos(-1);
+
+Vec3 on_circle(double radius, double angle, double z) {
+  return {radius * std::cos(angle), radius * std::sin(angle), z};
+}
+
+void add_quad(SurfaceMesh& s, VertexIndex a, VertexIndex b, VertexIndex c, VertexIndex d) {
+  s.triangles.push_back({a, b, c});
+  s.triangles.push_back({a, c, d});
+}
+
+}  // namespace
+
+SurfaceMesh faceted_pin(int sides, double radius, double low, double high, double turn) {
+  SurfaceMesh pin;
+  const auto n = static_cast<VertexIndex>(sides);
+  for (const double z : {low, high})
+    for (int i = 0; i < sides; ++i) pin.points.push_back(on_circle(radius, turn + 2 * kPi * i / sides, z));
+  pin.points.push_back({0, 0, low});
+  pin.points.push_back({0, 0, high});
+  for (VertexIndex i = 0; i < n; ++i) {
+    const VertexIndex j = (i + 1) % n;
+    add_quad(pin, i, j, n + j, n + i);
+    pin.triangles.push_back({2 * n, j, i});
+    pin.triangles.push_back({2 * n + 1, n + i, n + j});
+  }
+  return pin;
+}
+
+SurfaceMesh faceted_ring(int sides, double inner, double outer, double height) {
+  SurfaceMesh ring;
+  const auto n = static_cast<VertexIndex>(sides);
+  for (const auto& [radius, z] :
+       {std::pair{inner, 0.0}, std::pair{inner, height}, std::pair{outer, height}, std::pair{outer, 0.0}})
+    for (int i = 0; i < sides; ++i) ring.points.push_back(on_circle(radius, 2 * kPi * i / sides, z));
+  for (VertexIndex i = 0; i < n; ++i)
+    for (VertexIndex k = 0; k < 4; ++k) {
+      const VertexIndex j = (i + 1) % n, l = (k + 1) % 4;
+      add_quad(ring, k * n + i, l * n + i, l * n + j, k * n + j);
+    }
+  return ring;
+}
+
+SurfaceMesh faceted_ball(int around, int down, double radius) {
+  SurfaceMesh ball;
+  const auto n = static_cast<VertexIndex>(around), rows = static_cast<VertexIndex>(down - 1);
+  for (int k = 1; k < down; ++k)
+    for (int i = 0; i < around; ++i)
+      ball.points.push_back(
+          on_circle(radius * std::sin(kPi * k / down), 2 * kPi * i / around, radius * std::cos(kPi * k / down)));
+  ball.points.push_back({0, 0, radius});
+  ball.points.push_back({0, 0, -radius});
+  const VertexIndex top = rows * n, bottom = top + 1;
+  for (VertexIndex i = 0; i < n; ++i) {
+    const VertexIndex j = (i + 1) % n;
+    ball.triangles.push_back({top, i, j});
+    ball.triangles.push_back({bottom, (rows - 1) * n + j, (rows - 1) * n + i});
+    for (VertexIndex k = 0; k + 1 < rows; ++k) add_quad(ball, k * n + i, (k + 1) * n + i, (k + 1) * n + j, k * n + j);
+  }
+  return ball;
+}
+
+SurfaceMesh faceted_segment(int sides, double inner, double outer, double low, double high, double from, double to) {
+  SurfaceMesh part;
+  const auto n = static_cast<VertexIndex>(sides + 1);
+  for (const auto& [radius, z] :
+       {std::pair{inner, low}, std::pair{inner, high}, std::pair{outer, high}, std::pair{outer, low}})
+    for (int i = 0; i <= sides; ++i) part.points.push_back(on_circle(radius, from + (to - from) * i / sides, z));
+  for (VertexIndex i = 0; i + 1 < n; ++i)
+    for (VertexIndex k = 0; k < 4; ++k) {
+      const VertexIndex l = (k + 1) % 4;
+      add_quad(part, k * n + i, l * n + i, l * n + i + 1, k * n + i + 1);
+    }
+  add_quad(part, 0, 3 * n, 2 * n, n);
+  add_quad(part, n - 1, 2 * n - 1, 3 * n - 1, 4 * n - 1);
+  return part;
+}
+
+}  // namespace octafront::testing

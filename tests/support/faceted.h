@@ -1,0 +1,21 @@
+#pragma once
+
+#include <octafront/surface_mesh.h>
+
+namespace octafront::testing {
+
+// Round bodies as programs facet them, each in its own way.
+
+/// A cylinder along z; its first corner is turned by so many radians.
+SurfaceMesh faceted_pin(int sides, double radius, double low, double high, double turn = 0);
+
+/// A ring along z from 0, with as many sides inside as outside.
+SurfaceMesh faceted_ring(int sides, double inner, double outer, double height);
+
+/// A ball by longitude and latitude.
+SurfaceMesh faceted_ball(int around, int down, double radius);
+
+/// The part of a ring between two angles, radians, from `low` to `high`.
+SurfaceMesh faceted_segment(int sides, double inner, double outer, double low, double high, double from, double to);
+
+}  // namespace octafront::testing
