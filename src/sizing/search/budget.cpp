@@ -3,6 +3,7 @@
 #include "base/core/elementary.h"
 #include "sizing/field/change_size_field.h"
 #include "sizing/prediction/affordable.h"
+#include "sizing/sources/model_extent.h"
 #include "sizing/sources/source_grid.h"
 
 #include <algorithm>
@@ -25,6 +26,9 @@ constexpr double kBudget = 1e6, kBudgetPerTriangle = 20, kMostBudget = 3e6;
 /// Of these what details get before the surface is made. The surface takes the rest for what it has to follow: strips
 /// between lines, and places where it would stray.
 constexpr double kForDetails = 400'000;
+/// A body that is thinner than its base size by and large, as plates, stars, combs and wires are, gets so many times
+/// what the base size alone comes to, and this much in any case: its gaps and bends ask for very many.
+constexpr double kTimesBase = 4, kLeastForDetails = 50'000;
 /// For details small sizes are raised by this factor at most: real details, such as a thousand small holes, would
 /// be lost.
 constexpr double kMostSmallRaised = 2.7;
@@ -46,6 +50,14 @@ double forced_by_largest(const SurfaceMesh& surface, const SizeOptions& options)
 /// A budget of the usual size, as the user's own factor changes it.
 double with_choices(double budget, const SurfaceMesh& surface, const SizeOptions& options) {
   return budget / elementary::pow(options.automatic_factor, 3) + forced_by_largest(surface, options);
+}
+
+/// What details get, in proportion to the shape.
+double for_details(const SurfaceMesh& surface) {
+  const double h = base_size(surface), a = area(surface), v = std::abs(enclosed_volume(surface));
+  const bool is_thin = 2 * v < h * a;
+  const double base = kTetsPerCube * v / (h * h * h) + kTetsPerSquare * a / (h * h);
+  return is_thin ? std::clamp(kTimesBase * base, kLeastForDetails, kForDetails) : kForDetails;
 }
 
 /// Raised to the least of some floors between `low` and `high` that leaves no more than `most` elements; to `high`
@@ -97,17 +109,17 @@ double most_automatic_budget(const SizeOptions& options) {
 SizeField within_budget(const SurfaceMesh& surface, const WantedSizes& wanted, const SizeOptions& options,
                         double budget, const Stage& stage) {
   const TetPrediction expected(surface);
-  const double for_details = with_choices(kForDetails, surface, options);
+  const double most_details = with_choices(for_details(surface), surface, options);
   double first = Affordable(surface, options).tets_on_faces([&](std::size_t f) { return wanted.face[f]; });
   double low = *std::ranges::min_element(wanted.face);
   if (!(first > kFarBeyond * budget)) {
     SizeField field = source_grid(surface, wanted, options, stage.context());
     first = expected(field);
-    if (first <= for_details) return field;
+    if (first <= most_details) return field;
     low = field.min_size();
   }
   const double high = std::min(wanted.ceiling, kMostSmallRaised * low);
-  Raised made = raised_to_count(surface, wanted, options, expected, for_details, low, high, stage.context());
+  Raised made = raised_to_count(surface, wanted, options, expected, most_details, low, high, stage.context());
   if (made.count > budget)
     made = raised_to_count(
         surface, wanted, options, expected, budget, high,

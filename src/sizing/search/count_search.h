@@ -29,7 +29,7 @@ class CountSearch {
   double least_miss() const { return least_miss_; }
   /// Whether the last count is nearer than all before.
   bool is_best() const { return is_best_; }
-  /// Whether the count would have had to change by the last step, and did not: limits and details decide, not the
+  /// Whether the count would have had to change by the last two steps, and did not: limits and details decide, not the
   /// sizes.
   bool stands_still() const;
 
@@ -38,10 +38,13 @@ class CountSearch {
     double scale = 0, count = 0;
     bool is_known = false;
   };
+  void step_beyond();
+  bool did_nothing() const;
   bool is_above(const Point& point) const { return point.count > wanted_; }
 
   double wanted_, scale_, slope_, least_miss_;
   bool is_best_ = false;
+  int still_ = 0;  ///< steps in turn that changed nothing
   Point before_, last_, above_, below_;
 };
 

@@ -6,6 +6,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <numbers>
 
 namespace octafront {
 
@@ -33,6 +34,11 @@ double model_extent(const SurfaceMesh& surface) {
 
 double base_size(const SurfaceMesh& surface) {
   return model_extent(surface) / kExtentPerSize;
+}
+
+double slenderness(const SurfaceMesh& surface) {
+  const double a = area(surface), v = enclosed_volume(surface);
+  return a * a * a / (8 * std::numbers::pi * v * v);
 }
 
 }  // namespace octafront

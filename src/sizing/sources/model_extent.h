@@ -11,4 +11,10 @@ double model_extent(const SurfaceMesh& surface);
 /// The size of elements that nothing speaks against: extent / 30 makes some 20,000 elements of a ball.
 double base_size(const SurfaceMesh& surface);
 
+/// The length over the radius of a rod of the same volume and area: 4.5 of a ball.
+double slenderness(const SurfaceMesh& surface);
+/// Rods twenty times as long as thick, and all that is more slender, have a rule of their own for what chords may cut
+/// off; animals and machine parts are far below.
+inline constexpr double kSlender = 40;
+
 }  // namespace octafront

@@ -6,6 +6,7 @@
 #include "base/geometry/measures.h"
 
 #include <algorithm>
+#include <cmath>
 #include <limits>
 #include <utility>
 
@@ -36,11 +37,41 @@ bool is_by_region(const SizeOptions& options, Vec3 p, double size) {
   });
 }
 
+/// A triangle is looked at in so many places that this many are on the whole surface at least, as far as so many on
+/// its edges suffice.
+constexpr double kLookedAt = 4000;
+constexpr int kMostOnEdge = 32;
+
+int parts_of_edge(double area, double whole) {
+  return std::clamp(static_cast<int>(std::ceil(std::sqrt(kLookedAt * area / whole))), 1, kMostOnEdge);
+}
+
 std::string percent(double part) {
   return part < 0.001 ? "under 0.1" : fmt::format("{:.3g}", 100 * part);
 }
 
 }  // namespace
+
+std::vector<SourceShares::Place> SourceShares::places_on(const SurfaceMesh& surface) {
+  const double whole = area(surface);
+  std::vector<Place> places;
+  for (std::uint32_t f = 0; f < surface.triangles.size(); ++f) {
+    const auto& [i, j, k] = surface.triangles[f];
+    const Vec3 a = surface.points[i], b = surface.points[j], c = surface.points[k], n = unit_normal(a, b, c);
+    const double area = triangle_area(surface.points, surface.triangles[f]);
+    const int parts = parts_of_edge(area, whole);
+    const auto add = [&](double u, double v) {
+      places.push_back({{a + (b - a) * (u / (3 * parts)) + (c - a) * (v / (3 * parts)), n, f}, area / (parts * parts)});
+    };
+    // The middles of its parts, those that lie as it does and those that are turned.
+    for (int u = 0; u < parts; ++u)
+      for (int v = 0; u + v < parts; ++v) {
+        add(3 * u + 1, 3 * v + 1);
+        if (u + v + 1 < parts) add(3 * u + 2, 3 * v + 2);
+      }
+  }
+  return places;
+}
 
 std::uint8_t SourceShares::number_of(const std::string& name) {
   const auto found = std::find(names_.begin(), names_.end(), name);
@@ -67,45 +98,55 @@ void SourceShares::add(std::string by, SizeAtPlace at) {
   if (at) places_.push_back({number_of(by), std::move(at)});
 }
 
+SourceShares::Asked SourceShares::least_at(const Place& place, const std::vector<double>& face) const {
+  Asked least{face[place.on.face], of_face_[place.on.face]};
+  // The largest of sizes that are given everywhere is nobody's: who gives them asks for it.
+  const bool is_given = names_[least.source] == kNobody && !places_.empty();
+  for (const AtPlace& source : places_)
+    if (const double size = source.at(place.on); size < least.size || (is_given && names_[least.source] == kNobody))
+      least = {size, source.number};
+  return least;
+}
+
+std::vector<SourceShares::Asked> SourceShares::least_at_all(const std::vector<Place>& places,
+                                                            const std::vector<double>& face) const {
+  std::vector<Asked> asked(places.size());
+  // What is asked in batches is asked for all places at once.
+  const bool is_batched = std::ranges::any_of(places_, [](const AtPlace& s) { return s.at.batched != nullptr; });
+  if (!is_batched) {
+    parallel_for(places.size(), [&](std::size_t i) { asked[i] = least_at(places[i], face); });
+    return asked;
+  }
+  for (const Place& place : places) least_at(place, face);
+  for (const AtPlace& source : places_)
+    if (source.at.batched) source.at.batched->fetch();
+  for (std::size_t i = 0; i < places.size(); ++i) asked[i] = least_at(places[i], face);
+  return asked;
+}
+
 std::vector<double> SourceShares::part_of_each(const SurfaceMesh& surface, const std::vector<double>& face,
                                                const SizeField& field, const SizeOptions& options,
                                                double factor) const {
-  // What is asked in batches is asked for all triangles at once.
-  const auto least_at = [&](std::size_t f, const PlaceOnSurface& place) {
-    std::pair<double, std::uint8_t> least{face[f], of_face_[f]};
-    for (const AtPlace& source : places_)
-      if (const double size = source.at(place); size < least.first) least = {size, source.number};
-    return least;
+  const std::vector<Place> places = places_on(surface);
+  const std::vector<Asked> asked = least_at_all(places, face);
+  std::vector<double> least_of(names_.size(), HUGE_VAL);
+  for (const Asked& a : asked) least_of[a.source] = std::min(least_of[a.source], a.size);
+  // Smaller sizes nearby that one source alone asks for are its own, where it is asked here, too.
+  const auto is_own = [&](const Asked& here, double came_out) {
+    for (std::size_t s = 0; s < least_of.size(); ++s)
+      if (s != here.source && least_of[s] < here.size) return false;
+    return least_of[here.source] <= came_out / kNearby && options.regions.empty();
   };
-  const auto place_of = [&](std::size_t f) {
-    const auto& [i, j, k] = surface.triangles[f];
-    const Vec3 a = surface.points[i], b = surface.points[j], c = surface.points[k];
-    return PlaceOnSurface{centroid(a, b, c), unit_normal(a, b, c), static_cast<std::uint32_t>(f)};
-  };
-  const auto by_whom = [&](std::size_t f) {
-    const PlaceOnSurface place = place_of(f);
-    const auto [asked, source] = least_at(f, place);
-    const double came_out = field.at(place.p) / factor;
+  std::vector<std::uint16_t> by(places.size());
+  parallel_for(places.size(), [&](std::size_t i) {
+    const double came_out = field.at(places[i].on.p) / factor;
     // Numbers of elements scale all sizes: then only who asks for the least is known.
-    const bool is_lower = !options.elements && came_out < kNearby * asked;
-    if (!is_lower) return std::size_t{source};
-    return names_.size() + is_by_region(options, place.p, came_out);
-  };
-  std::vector<std::uint16_t> by(face.size());
-  const auto ask = [&](std::size_t f) { by[f] = static_cast<std::uint16_t>(by_whom(f)); };
-  if (std::ranges::any_of(places_, [](const AtPlace& s) { return s.at.batched != nullptr; })) {
-    for (std::size_t f = 0; f < face.size(); ++f) least_at(f, place_of(f));
-    for (const AtPlace& source : places_)
-      if (source.at.batched) source.at.batched->fetch();
-    for (std::size_t f = 0; f < face.size(); ++f) ask(f);
-  } else {
-    parallel_for(face.size(), ask);
-  }
+    const bool is_lower = !options.elements && came_out < kNearby * asked[i].size && !is_own(asked[i], came_out);
+    by[i] = static_cast<std::uint16_t>(is_lower ? names_.size() + is_by_region(options, places[i].on.p, came_out)
+                                                : asked[i].source);
+  });
   std::vector<double> part(names_.size() + 2);
-  for (std::size_t f = 0; f < face.size(); ++f) {
-    const auto& [i, j, k] = surface.triangles[f];
-    part[by[f]] += triangle_area(surface.points[i], surface.points[j], surface.points[k]);
-  }
+  for (std::size_t i = 0; i < places.size(); ++i) part[by[i]] += places[i].area;
   const double whole = area(surface);
   for (double& p : part) p /= whole;
   return part;

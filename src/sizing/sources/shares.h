@@ -14,6 +14,9 @@ namespace octafront {
 
 struct SurfaceMesh;
 
+/// Who asks for the base where a source speaks for all places.
+inline const char* const kNobody = "nobody";
+
 /// Which source asks for the smallest size on each triangle, for the report.
 class SourceShares {
  public:
@@ -36,6 +39,17 @@ class SourceShares {
     std::uint8_t number;
     SizeAtPlace at;
   };
+  struct Place {
+    PlaceOnSurface on;
+    double area;  ///< that it stands for
+  };
+  struct Asked {
+    double size;
+    std::uint8_t source;
+  };
+  static std::vector<Place> places_on(const SurfaceMesh& surface);
+  Asked least_at(const Place& place, const std::vector<double>& face) const;
+  std::vector<Asked> least_at_all(const std::vector<Place>& places, const std::vector<double>& face) const;
   std::uint8_t number_of(const std::string& name);
   std::vector<double> part_of_each(const SurfaceMesh& surface, const std::vector<double>& face, const SizeField& field,
                                    const SizeOptions& options, double factor) const;

@@ -5,6 +5,7 @@
 
 #include "base/core/parallel.h"
 #include "base/geometry/measures.h"
+#include "base/geometry/needle.h"
 
 #include <algorithm>
 #include <atomic>
@@ -50,19 +51,13 @@ class Sampler {
 
   void sample(Vec3 a, Vec3 b, Vec3 c, Vec3 n, std::uint32_t face) {
     const Vec3 p = centroid(a, b, c);
-    double h = face_size_[face];
-    if (size_at_) h = std::min(h, size_at_({p, n, face}));
+    const double h = size_at(p, n, face), most = std::min(h, size_at_.spacing);
     const double ab = squared_distance(a, b), bc = squared_distance(b, c), ca = squared_distance(c, a);
-    const double longest = std::max({ab, bc, ca});
-    const double most = std::min(h, size_at_.spacing);
-    if (longest <= most * most || is_short_strip(longest, triangle_area(a, b, c), most)) {
-      if (samples_.size() == kMostSamples) {
-        throw OptionError(fmt::format(
-            "sizes as small as {:.4g} near ({:.6g}, {:.6g}, {:.6g}) are too small for this surface: its "
-            "background grid alone would need more than {} samples; ask for larger sizes or give a `min_size`",
-            h, p.x, p.y, p.z, kMostSamples));
-      }
-      samples_.push_back({p, n, h, kReachOfEdge * std::sqrt(longest), triangle_area(a, b, c)});
+    const double longest = std::max({ab, bc, ca}), area = triangle_area(a, b, c);
+    if (longest <= most * most || is_short_strip(longest, area, most)) {
+      add({p, n, h, kReachOfEdge * std::sqrt(longest), area});
+    } else if (const Needle needle({a, b, c}); needle.is_one() && needle.height() <= most) {
+      sample_along(needle, 0, 1, n, face);
     } else if (longest == ab) {
       halve(c, a, b, n, face);
     } else if (longest == bc) {
@@ -73,6 +68,39 @@ class Sampler {
   }
 
  private:
+  double size_at(Vec3 p, Vec3 n, std::uint32_t face) const {
+    return size_at_ ? std::min(face_size_[face], size_at_({p, n, face})) : face_size_[face];
+  }
+
+  void add(const SizeSample& s) {
+    if (samples_.size() == kMostSamples) {
+      throw OptionError(fmt::format(
+          "sizes as small as {:.4g} near ({:.6g}, {:.6g}, {:.6g}) are too small for this surface: its "
+          "background grid alone would need more than {} samples; ask for larger sizes or give a `min_size`",
+          s.h, s.p.x, s.p.y, s.p.z, kMostSamples));
+    }
+    samples_.push_back(s);
+  }
+
+  void sample_along(const Needle& needle, double t0, double t1, Vec3 n, std::uint32_t face) {
+    const double middle = 0.5 * (t0 + t1), length = (t1 - t0) * needle.length();
+    const Vec3 p = needle.middle(middle);
+    const double h = size_at(p, n, face);
+    const double most = std::min(h, size_at_.spacing);
+    if (length <= most || (length <= step_ * most && step_ * needle.height() <= most))
+      return add({p, n, h, kReachOfEdge * length, needle.area(t0, t1)});
+    if (middle == t0 || middle == t1) refuse_steps(p);
+    sample_along(needle, t0, middle, n, face);
+    sample_along(needle, middle, t1, n, face);
+  }
+
+  [[noreturn]] static void refuse_steps(Vec3 p) {
+    throw OptionError(fmt::format(
+        "sizes near ({:.6g}, {:.6g}, {:.6g}) are smaller than the steps between doubles there; ask for larger "
+        "sizes, or move the model to the origin",
+        p.x, p.y, p.z));
+  }
+
   bool is_short_strip(double squared_length, double area, double size) const {
     return step_ > 1 && squared_length <= step_ * step_ * size * size &&
            2 * step_ * area <= size * std::sqrt(squared_length);
@@ -80,11 +108,7 @@ class Sampler {
 
   void halve(Vec3 apex, Vec3 from, Vec3 to, Vec3 n, std::uint32_t face) {
     const Vec3 middle = 0.5 * (from + to);
-    if (middle == from || middle == to)
-      throw OptionError(fmt::format(
-          "sizes near ({:.6g}, {:.6g}, {:.6g}) are smaller than the steps between doubles there; ask for larger "
-          "sizes, or move the model to the origin",
-          middle.x, middle.y, middle.z));
+    if (middle == from || middle == to) refuse_steps(middle);
     sample(apex, from, middle, n, face);
     sample(apex, middle, to, n, face);
   }

@@ -8,6 +8,7 @@
 #include "sizing/sources/given_sizes.h"
 #include "sizing/sources/model_extent.h"
 #include "sizing/sources/named_sizes.h"
+#include "sizing/sources/round_places.h"
 #include "sizing/sources/sizes_in_space.h"
 
 #include <algorithm>
@@ -16,6 +17,8 @@
 #include <memory>
 #include <string>
 #include <utility>
+
+#include <fmt/core.h>
 
 namespace octafront {
 
@@ -33,12 +36,18 @@ constexpr double kChosenFloor = 1.0 / 200;
 /// Chords cut corners: the automatic choice is scaled until the volume lost so, as predicted, is below this part.
 constexpr double kVolumeLoss = 0.003;
 constexpr double kLeastAutomaticScale = 0.3;
+/// Slender bodies would have ever more elements for the same part: it is this much more for each unit of slenderness,
+/// to a part at most that 13 elements a turn keep. They get their volume back when the surface is made.
+constexpr double kLossPerSlenderness = kVolumeLoss / 12, kMostVolumeLoss = 0.03, kLeastScaleOfSlender = 0.02;
+/// Of a given size what is asked for where the body is round and thinner.
+constexpr double kRoundFloor = 1.0 / 32;
 
 /// What the user's options come to, once defaults are filled in.
 struct Choice {
   bool automatic = false;
   double base = 0, floor = 0, gap_floor = 0;
-  double chosen_floor = 0;                              ///< where it is no automatic choice
+  double chosen_floor = 0;  ///< where it is no automatic choice
+  double curvature_floor = 0;
   double curvature = 0, gap = 0, feature_elements = 0;  ///< 0: not asked
 };
 
@@ -52,14 +61,14 @@ std::string name_of_base(const SizeOptions& o, double base) {
   if (o.max_size && base == *o.max_size && base != o.size.value_or(0)) return "`max_size`";
   if (o.size) return "`size`";
   if (o.min_size && base == *o.min_size) return "`min_size`";
-  return o.callback || o.mesh || !o.point_sizes.empty() ? "nobody" : "the automatic choice";
+  return o.callback || o.mesh || !o.point_sizes.empty() ? kNobody : "the automatic choice";
 }
 
 double largest_size(const SizeMesh& mesh) {
   return *std::ranges::max_element(mesh.point_sizes.empty() ? mesh.element_sizes : mesh.point_sizes);
 }
 
-Choice choose(const SurfaceMesh& surface, const SizeOptions& o) {
+Choice choose(const SurfaceMesh& surface, const SizeOptions& o, const FaceRules& rules) {
   Choice c;
   c.automatic = has_automatic_base(o);
   const double ours = base_size(surface);
@@ -76,7 +85,9 @@ Choice choose(const SurfaceMesh& surface, const SizeOptions& o) {
   c.floor = c.automatic ? o.min_size.value_or(usual * kAutomaticFloor) : c.chosen_floor;
   c.gap_floor = o.min_size.value_or(usual * (c.automatic ? kAutomaticGapFloor : kChosenFloor));
   c.gap = o.gap.value_or(c.automatic ? kAutomaticGap : 0);
-  c.curvature = o.curvature.value_or(c.automatic ? kAutomaticCurvature : 0);
+  const bool turns = o.size && !o.curvature && rules.turns > 0;
+  c.curvature = o.curvature.value_or(c.automatic ? kAutomaticCurvature : turns ? rules.turns : 0);
+  c.curvature_floor = turns ? o.min_size.value_or(c.base * kLeastOfGiven) : c.floor;
   c.feature_elements = o.feature_elements.value_or(c.automatic ? kAutomaticFeatureElements : 0);
   return c;
 }
@@ -97,9 +108,12 @@ void apply_facets(const SurfaceMesh& surface, const FaceNeighbours& across, doub
 }
 
 double automatic_scale(const SurfaceMesh& surface, const SurfaceCurvature& curvature, const std::vector<double>& face) {
-  const double loss = predicted_volume_loss(surface, curvature, face);
-  const double allowed = kVolumeLoss * std::abs(enclosed_volume(surface));
-  return loss > allowed ? std::max(kLeastAutomaticScale, std::sqrt(allowed / loss)) : 1;
+  const double loss = predicted_volume_loss(surface, curvature, face) / std::abs(enclosed_volume(surface));
+  const double slender = slenderness(surface);
+  const bool is_slender = slender > kSlender;
+  const double allowed = is_slender ? std::min(kMostVolumeLoss, kLossPerSlenderness * slender) : kVolumeLoss;
+  const double least = is_slender ? kLeastScaleOfSlender : kLeastAutomaticScale;
+  return loss > allowed ? std::max(least, std::sqrt(allowed / loss)) : 1;
 }
 
 /// What says how a surface is shaped. Faces that repair invented do not: they bend as they had to, and their
@@ -195,7 +209,7 @@ double apply_shape(const KnownSurface& known, const Choice& choice, const SizeOp
   if (limits_chords)
     apply_chord_errors(curvature, error_of, rules.must_hold ? choice.chosen_floor : choice.floor, face);
   sources.changed("`max_deviation`", face);
-  if (choice.curvature > 0) apply_curvature(curvature, choice.curvature, choice.floor, face);
+  if (choice.curvature > 0) apply_curvature(curvature, choice.curvature, choice.curvature_floor, face);
   sources.changed("`curvature`", face);
   return choice.automatic ? automatic_scale(surface, curvature, face) : 1;
 }
@@ -212,6 +226,22 @@ std::vector<SizeSample> samples_of_features(const SurfaceMesh& surface, const Ch
     affordable.require("feature_elements", choice.feature_elements, tets);
   }
   return feature_samples(surface, curves, choice.feature_elements, choice.floor, choice.base);
+}
+
+/// Of a size that the user gave: where it would lose a thin round body.
+SizeAtPlace sizes_of_thin(const KnownSurface& known, const SizeOptions& options, const ShapeLines& lines,
+                          const std::vector<double>& face, const Stage& stage) {
+  if (!options.size) return {};
+  const SurfaceCurvature curvature =
+      surface_curvature(known.mesh(), smooth_face_neighbours(known.edges(), lines.borders), stage.context());
+  const double floor = std::max(options.min_size.value_or(0), kRoundFloor * *options.size);
+  SizeAtPlace sizes = sizes_in_round_places(known, curvature, face, floor);
+  if (sizes)
+    stage.note(
+        fmt::format("the body is round and thinner than {:.4g} in places: elements are smaller there, or it would lose "
+                    "its volume. `min_size` says how small they may be",
+                    *options.size));
+  return sizes;
 }
 
 void add_samples(std::vector<SizeSample>& samples, const std::vector<SizeSample>& more) {
@@ -238,7 +268,7 @@ WantedSizes wanted_sizes(const KnownSurface& known, const SizeOptions& options, 
                          const FaceRules& rules) {
   const SurfaceMesh& surface = known.mesh();
   const double least_size = options.min_size.value_or(0);
-  const Choice choice = choose(surface, options);
+  const Choice choice = choose(surface, options, rules);
   const Affordable affordable(surface, options);
   const ShapeLines lines = lines_of_shape(known, rules.is_invented);
   WantedSizes wanted;
@@ -259,6 +289,9 @@ WantedSizes wanted_sizes(const KnownSurface& known, const SizeOptions& options, 
   const std::vector<SizeInSpace> in_space = sizes_in_space(known, options);
   add_samples(wanted.points, samples_inside(known, in_space, least_size, stage.context()));
   wanted.at_place = sizes_at_places(known, choice, options, affordable, in_space, wanted.sources);
+  const SizeAtPlace thin = sizes_of_thin(known, options, lines, wanted.face, stage);
+  wanted.sources.add("thin round places", thin);
+  wanted.at_place = least_of(wanted.at_place, thin);
   const bool is_graded = options.interior == SizeOptions::Interior::kGraded;
   wanted.ceiling = std::max(is_graded ? options.max_size.value_or(HUGE_VAL) : choice.base * scale, least_size);
   const auto [least, most] = std::minmax_element(wanted.face.begin(), wanted.face.end());

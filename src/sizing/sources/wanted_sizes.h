@@ -19,13 +19,19 @@
 
 namespace octafront {
 
+/// A size that is given means what it says: what the shape alone asks for does not go below this part of it.
+inline constexpr double kLeastOfGiven = 1.0 / 4;
+
 /// What holds of single triangles of a surface, on top of SizeOptions.
 struct FaceRules {
   std::span<const double> chord_errors = {};  ///< SizeOptions::chord_error; infinity: nothing; empty: so everywhere
   /// Not 0: nobody knows how the surface bends there, so it asks for no size. Empty: so nowhere.
   std::span<const std::uint8_t> is_invented = {};
-  /// Chord errors are what a body's volume needs: no floor of an automatic choice stops them.
+  /// Chord errors are what the user asks of volumes: no floor of an automatic choice stops them.
   bool must_hold = false;
+  /// Where a size is given, and nothing said of curvature: elements that a full turn of the surface takes, down to
+  /// kLeastOfGiven of that size. 0: none.
+  double turns = 0;
 };
 
 /// What all sources together want on a surface, before any of it is put into a grid. Input units.

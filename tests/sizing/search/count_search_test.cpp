@@ -32,6 +32,11 @@ TEST(CountSearch, ClosesInOnACountThatJumps) {
   EXPECT_LE(tries_by([](double h) { return h < 1.7 ? 5000 / h : 1700 / h; }), 6);
 }
 
+/// Details of the surface decide at first, and are gone at sizes that outgrow them.
+TEST(CountSearch, FallsOffNoCliff) {
+  EXPECT_LE(tries_by([](double h) { return h < 1.5 ? 2600 / std::pow(h, 0.35) : h < 5 ? 5000 / (h * h) : 6; }), 5);
+}
+
 TEST(CountSearch, KnowsTheBestAndWhatIsMissing) {
   CountSearch search(1000);
   search.came_out(2000);
@@ -53,6 +58,9 @@ TEST(CountSearch, SeesThatLimitsDecide) {
   EXPECT_FALSE(search.stands_still());
   search.step();
   search.came_out(2999);
+  EXPECT_FALSE(search.stands_still()) << "one step says little";
+  search.step();
+  search.came_out(2998);
   EXPECT_TRUE(search.stands_still());
   search.step();
   search.came_out(2000);

@@ -97,7 +97,8 @@ TEST(SizeField, NearAPlaceRisesByItsLaw) {
   options.size = 0.5;
   options.near = {{"", {0, 0.5, 0.5}, 0.02, 1}};
   options.gradation = 1;
-  const SizeField field = sizes_of(box(2, 1, 1), options);
+  const SurfaceMesh body = box(2, 1, 1);
+  const SizeField field = sizes_of(body, options, detect_features(body, 40));
   // size / (1 - s / distance), inside too.
   for (const double s : {0.05, 0.25, 0.5, 0.75}) {
     const double law = 0.02 / (1 - s);
