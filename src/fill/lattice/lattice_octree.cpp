@@ -31,9 +31,9 @@ Box3 box_of(const RootCube& root, OctreeKey cell) {
 std::vector<Box3> boxes_of_parts(const SurfaceMesh& surface, double reach) {
   std::vector<Box3> boxes;
   boxes.reserve(surface.triangles.size());
-  const auto take = [&](const TriangleCorners& part, Vec3, double has) {
+  const auto take = [&](PartCorners part, Vec3, double has) {
     if (has > reach) return Part::kDivide;
-    boxes.push_back(box_of(part));
+    boxes.push_back(box_of_part(part));
     return Part::kWithin;
   };
   for (const auto& [a, b, c] : surface.triangles)

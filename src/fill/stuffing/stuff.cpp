@@ -76,6 +76,7 @@ TetMesh stuff_surface(const SurfaceMesh& surface, const Features& features, Surf
   name_boundary(mesh, surface, domain.triangles());
   mesh.region = connected_parts(mesh);
   mesh.patch_names = surface.patch_names;
+  mesh.patch_labels = surface.patch_labels;
   stage.count("parts", mesh.region.empty() ? 1 : 1 + *std::max_element(mesh.region.begin(), mesh.region.end()));
   return mesh;
 }

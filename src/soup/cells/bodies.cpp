@@ -5,13 +5,19 @@
 
 #include "base/core/utf8.h"
 #include "base/core/wording.h"
+#include "base/geometry/measures.h"
+#include "base/mesh/complex.h"
 #include "soup/cells/close_gaps.h"
+#include "soup/cells/dissolve.h"
 #include "soup/cells/labelled.h"
 
 #include <algorithm>
+#include <cmath>
 #include <iterator>
 #include <map>
+#include <optional>
 #include <queue>
+#include <tuple>
 #include <utility>
 
 #include <fmt/format.h>
@@ -28,13 +34,20 @@ struct Together {
   std::vector<std::uint32_t> body, patch, source;
 };
 
+/// Shells of one file have no names.
+std::string name_of(const std::vector<Body>& bodies, std::uint32_t b) {
+  return bodies[b].name.empty() ? fmt::format("shell {}", b + 1) : bodies[b].name;
+}
+
 /// Why a body cannot be used, with its name.
 RepairedSurface repaired_body(const Body& body, const RunContext& context) {
   try {
     RepairedSurface repaired = repair_surface(body.surface, context);
     const SurfaceDefects defects = find_defects(repaired, context);
-    if (!defects.clean()) throw InputError(defects.describe());
+    if (!defects.clean()) throw DefectsError(fmt::format("{}: {}", body.name, defects.describe()), defects);
     return repaired;
+  } catch (const DefectsError&) {
+    throw;
   } catch (const InputError& error) {
     throw InputError(fmt::format("{}: {}", body.name, error.what()));
   }
@@ -45,7 +58,8 @@ Together put_together(const std::vector<Body>& bodies, Complex& complex, const R
   std::uint32_t faces = 0;
   for (std::uint32_t b = 0; b < bodies.size(); ++b) {
     const RepairedSurface repaired = repaired_body(bodies[b], context);
-    for (const std::string& note : repaired.notes) complex.notes.push_back(fmt::format("{}: {}", bodies[b].name, note));
+    for (const std::string& note : repaired.notes)
+      complex.notes.push_back(fmt::format("{}: {}", name_of(bodies, b), note));
     const auto first = static_cast<VertexIndex>(all.points.size());
     all.points.insert(all.points.end(), repaired.surface.points.begin(), repaired.surface.points.end());
     for (std::size_t t = 0; t < repaired.surface.triangles.size(); ++t) {
@@ -121,34 +135,102 @@ std::vector<std::uint32_t> regions_of(const std::vector<Windings>& windings, Com
   return region;
 }
 
-/// Cells of no body that are thinner than the tolerance go to the body that they share most of their walls with.
-std::uint64_t fill_gaps(Labelled& labelled, double tolerance) {
-  const std::vector<double> volumes = labelled.cells.volumes();
-  std::vector<std::map<std::uint32_t, double>> shared(labelled.cells.count());
-  std::vector<double> area(labelled.cells.count(), 0);
-  for (std::size_t t = 0; t < labelled.arranged.triangles.size(); ++t) {
-    const auto [front, back] = labelled.cells.sides_of(t);
-    const auto [a, b, c] = labelled.arranged.triangles[t];
-    const auto& p = labelled.arranged.points;
-    const double size = length(cross(p[b] - p[a], p[c] - p[a])) / 2;
-    const auto add = [&](std::uint32_t cell, std::uint32_t other) {
-      area[cell] += size;
-      if (labelled.region[other] != kNone) shared[cell][labelled.region[other]] += size;
-    };
-    add(front, back);
-    add(back, front);
+/// Cells thinner than the misfit of the bodies around them are nobody's: walls of later bodies give way there, so that
+/// the wall of the earliest one is left.
+class Slivers {
+ public:
+  Slivers(Labelled& labelled, const std::vector<Windings>& windings, const std::vector<std::uint32_t>& body,
+          const cells::Misfits& misfits)
+      : labelled_(labelled), windings_(windings), body_(body), misfits_(misfits), walls_(labelled.cells.count()) {
+    for (std::uint32_t t = 0; t < labelled.arranged.triangles.size(); ++t)
+      for (const std::uint32_t c : labelled.cells.sides_of(t)) walls_[c].push_back(t);
   }
-  std::uint64_t filled = 0;
-  for (std::uint32_t c = 1; c < labelled.cells.count(); ++c) {
-    const bool thin = 2 * volumes[c] < tolerance * area[c];
-    if (labelled.region[c] != kNone || !thin || shared[c].empty()) continue;
-    labelled.region[c] = std::max_element(shared[c].begin(), shared[c].end(), [](const auto& x, const auto& y) {
-                           return x.second < y.second;
-                         })->first;
-    ++filled;
+
+  /// Which cells these are, how many changed hands, and their volume.
+  struct Given {
+    std::vector<char> is_sliver;  ///< per cell
+    std::uint64_t count = 0;
+    double volume = 0;
+  };
+  Given give_away() {
+    const std::vector<double> volumes = labelled_.cells.volumes();
+    std::vector<char> waits(labelled_.cells.count(), 0);
+    Given given;
+    for (std::uint32_t c = 1; c < waits.size(); ++c) {
+      double area = 0;
+      for (const std::uint32_t t : walls_[c]) area += area_of(t);
+      waits[c] = 2 * volumes[c] < reach_around(c) * area;
+    }
+    given.is_sliver = waits;
+    for (bool any = true; any;) {
+      any = false;
+      std::vector<std::pair<std::uint32_t, std::uint32_t>> settled;
+      for (std::uint32_t c = 1; c < waits.size(); ++c)
+        if (waits[c])
+          if (const std::optional<std::uint32_t> r = region_beyond(c, waits)) settled.emplace_back(c, *r);
+      for (const auto& [c, r] : settled) {
+        any = true;
+        waits[c] = 0;
+        if (labelled_.region[c] == r) continue;
+        labelled_.region[c] = r;
+        ++given.count;
+        given.volume += volumes[c];
+      }
+    }
+    return given;
   }
-  return filled;
-}
+
+ private:
+  double area_of(std::uint32_t t) const {
+    return triangle_area(labelled_.arranged.points, labelled_.arranged.triangles[t]);
+  }
+
+  std::vector<std::uint32_t> bodies_around(std::uint32_t c) const {
+    std::vector<std::uint32_t> around;
+    for (const std::uint32_t t : walls_[c])
+      for (const Origin& o : labelled_.arranged.origins_of(t)) around.push_back(body_[o.triangle]);
+    std::sort(around.begin(), around.end());
+    around.erase(std::unique(around.begin(), around.end()), around.end());
+    return around;
+  }
+
+  /// The largest misfit of two bodies around a cell, one of which has it, if any has.
+  double reach_around(std::uint32_t c) const {
+    const std::vector<std::uint32_t> around = bodies_around(c);
+    double most = 0;
+    for (const std::uint32_t a : around)
+      for (const std::uint32_t b : around) {
+        if (a == b) continue;
+        if (!windings_[c].empty() && !windings_[c].contains(a) && !windings_[c].contains(b)) continue;
+        most = std::max(most, misfits_.reach(a, b));
+      }
+    return most;
+  }
+
+  /// The region across most of the walls that are not the earliest body's; of walls to cells that are settled.
+  std::optional<std::uint32_t> region_beyond(std::uint32_t c, const std::vector<char>& waits) const {
+    const std::uint32_t earliest = bodies_around(c).front();
+    std::map<std::uint32_t, double> areas;
+    for (const std::uint32_t t : walls_[c]) {
+      const auto origins = labelled_.arranged.origins_of(t);
+      if (std::any_of(origins.begin(), origins.end(), [&](const Origin& o) { return body_[o.triangle] == earliest; }))
+        continue;
+      const auto [front, back] = labelled_.cells.sides_of(t);
+      const std::uint32_t other = front == c ? back : front;
+      if (!waits[other]) areas[labelled_.region[other]] += area_of(t);
+    }
+    if (areas.empty()) return std::nullopt;
+    return std::max_element(areas.begin(), areas.end(),
+                            [](const auto& x, const auto& y) { return x.second < y.second; })
+        ->first;
+  }
+
+  Labelled& labelled_;
+  const std::vector<Windings>& windings_;
+  const std::vector<std::uint32_t>& body_;
+  const cells::Misfits& misfits_;
+  std::vector<std::vector<std::uint32_t>> walls_;  ///< per cell
+};
 
 /// Only what lies in the first body stays.
 void empty_outside_first(const std::vector<Windings>& windings, const std::vector<Body>& bodies, Labelled& labelled) {
@@ -199,8 +281,8 @@ void note_overlaps(const Labelled& labelled, const std::vector<Windings>& windin
   std::string words;
   for (std::size_t i = 0; i < std::min(kMostNamed, pairs.size()); ++i) {
     const auto& [volume, pair] = pairs[i];
-    words += fmt::format("{}\"{}\" takes {:.4g} from \"{}\"", i == 0 ? "" : ", ", bodies[pair.first].name, -volume,
-                         bodies[pair.second].name);
+    words += fmt::format("{}\"{}\" takes {:.4g} from \"{}\"", i == 0 ? "" : ", ", name_of(bodies, pair.first), -volume,
+                         name_of(bodies, pair.second));
   }
   if (pairs.size() > kMostNamed) words += fmt::format(" and {} more pairs", pairs.size() - kMostNamed);
   notes.push_back(fmt::format("bodies overlap, and the {} one has its way, by volume: {}", who, words));
@@ -216,8 +298,10 @@ void note_common_regions(const Labelled& labelled, std::size_t bodies, std::size
     double volume = 0;
     for (std::size_t c = 0; c < volumes.size(); ++c)
       if (labelled.region[c] == r) volume += volumes[c];
-    words += fmt::format("{}\"{}\" {:.4g}", r == bodies ? "" : ", ", labelled.names[r], volume);
+    if (volume == 0) continue;
+    words += fmt::format("{}\"{}\" {:.4g}", words.empty() ? "" : ", ", labelled.names[r], volume);
   }
+  if (words.empty()) return;
   notes.push_back("bodies overlap, and what they share are regions of their own, by volume: " + words);
 }
 
@@ -257,19 +341,85 @@ class Patches {
   std::vector<std::string> names_;
 };
 
-double tolerance_of_bodies(const ComplexOptions& options, const std::vector<Vec3>& points) {
-  // Single precision keeps seven digits.
-  constexpr double kOfDiagonal = 1e-6;
-  Box3 box;
-  for (const Vec3 p : points) box.add(p);
-  return options.tolerance.value_or(kOfDiagonal * box.diagonal());
+/// Walls that became one, the farthest apart first.
+std::string in_words(const cells::Misfits& misfits, const std::vector<Body>& bodies) {
+  std::vector<std::pair<double, std::pair<std::uint32_t, std::uint32_t>>> pairs;
+  for (const auto& [pair, d] : misfits.all())
+    if (d > misfits.floor()) pairs.push_back({-d, pair});
+  std::sort(pairs.begin(), pairs.end());
+  constexpr std::size_t kMostNamed = 5;
+  std::string words;
+  for (std::size_t i = 0; i < std::min(kMostNamed, pairs.size()); ++i)
+    words +=
+        fmt::format("{}\"{}\" and \"{}\" up to {:.3g} apart", i == 0 ? "" : ", ",
+                    name_of(bodies, pairs[i].second.first), name_of(bodies, pairs[i].second.second), -pairs[i].first);
+  if (pairs.size() > kMostNamed) words += fmt::format(" and {} more pairs", pairs.size() - kMostNamed);
+  return words;
 }
 
-void note_changes(const cells::ClosedGaps& closed, double tolerance, const Arrangement& arranged,
-                  std::vector<std::string>& notes) {
-  if (closed.moved > 0)
+/// What the bodies' own walls enclose, before and behind.
+double moved_volume(const Together& all, const cells::ClosedGaps& closed, std::size_t bodies) {
+  std::vector<SurfaceMesh> before(bodies), behind(bodies);
+  for (std::size_t t = 0; t < all.triangles.size(); ++t) before[all.body[t]].triangles.push_back(all.triangles[t]);
+  for (std::size_t t = 0; t < closed.triangles.size(); ++t)
+    behind[all.body[closed.source[t]]].triangles.push_back(closed.triangles[t]);
+  double moved = 0;
+  for (std::size_t b = 0; b < bodies; ++b) {
+    before[b].points = all.points;
+    behind[b].points = closed.points;
+    moved += std::abs(enclosed_volume(behind[b]) - enclosed_volume(before[b]));
+    before[b] = behind[b] = {};
+  }
+  return moved;
+}
+
+struct Brought {
+  cells::ClosedGaps closed;
+  Arrangement arranged;
+};
+
+/// Where walls that were brought together whole do not settle, as rough ones may not, only their rims are.
+Brought bring_together(const cells::BodySoup& soup, const cells::Misfits& misfits, const RunContext& context) {
+  const auto brought = [&](cells::Closes what) {
+    Brought made{close_gaps(soup, misfits, what, context), {}};
+    made.arranged = arrange(made.closed.points, made.closed.triangles, context);
+    return made;
+  };
+  try {
+    return brought(cells::Closes::kWalls);
+  } catch (const InputError&) {
+    if (misfits.largest() <= misfits.floor()) throw;
+    return brought(cells::Closes::kRims);
+  }
+}
+
+bool lexicographic_order(Vec3 a, Vec3 b) {
+  return std::tie(a.x, a.y, a.z) < std::tie(b.x, b.y, b.z);
+}
+
+/// What one body's vertices and edges left on another's wall goes: the wall has its own triangles again.
+void dissolve_imprints(Complex& complex, const Together& all, const cells::Misfits& misfits,
+                       const RunContext& context) {
+  if (misfits.largest() <= misfits.floor()) return;
+  std::vector<Vec3> given = all.points;
+  std::sort(given.begin(), given.end(), lexicographic_order);
+  std::vector<char> may_go;
+  for (const Vec3 p : complex.surface.points)
+    may_go.push_back(!std::binary_search(given.begin(), given.end(), p, lexicographic_order));
+  if (cells::dissolve(complex.surface, may_go, misfits.floor(), context) == 0) return;
+  complex.volumes = volumes_of_regions(complex.surface);
+}
+
+void note_changes(const cells::ClosedGaps& closed, const std::string& walls, double moved, double floor,
+                  const Arrangement& arranged, std::vector<std::string>& notes) {
+  if (!walls.empty())
+    notes.push_back(
+        fmt::format("walls of bodies that nearly touch are one, those of the earlier body: {}; that moved "
+                    "{} by {:.3g} at most, and {:.3g} of volume; `tolerance` 0 leaves all as it is",
+                    walls, counted(closed.moved, "vertex", "vertices"), closed.largest_move, moved));
+  else if (closed.moved > 0)
     notes.push_back(fmt::format("{} moved onto earlier bodies within the tolerance of {:.3g}, by {:.3g} at most",
-                                counted(closed.moved, "vertex", "vertices"), tolerance, closed.largest_move));
+                                counted(closed.moved, "vertex", "vertices"), floor, closed.largest_move));
   if (arranged.new_points > 0)
     notes.push_back(fmt::format("faces divided where bodies meet, at {}", counted(arranged.new_points, "new point")));
 }
@@ -278,27 +428,34 @@ void note_changes(const cells::ClosedGaps& closed, double tolerance, const Arran
 
 namespace cells {
 
-Joined joined_bodies(const std::vector<Body>& bodies, const ComplexOptions& options, const RunContext& context) {
+Joined joined_bodies(const std::vector<Body>& bodies, const ComplexOptions& options, const ElementsToCome& elements,
+                     const RunContext& context) {
   using Overlap = ComplexOptions::Overlap;
   if (bodies.empty()) throw OptionError("there is no body to join");
   if (options.tolerance && !(*options.tolerance >= 0))
     throw OptionError(fmt::format("`tolerance` is {}; it must not be below 0", *options.tolerance));
   Complex before;
   Together all = put_together(bodies, before, context);
-  const double tolerance = tolerance_of_bodies(options, all.points);
-  ClosedGaps closed = close_gaps({all.points, all.triangles, all.body}, tolerance, context);
-  const Arrangement arranged = arrange(closed.points, closed.triangles, context);
+  const BodySoup soup{all.points, all.triangles, all.body};
+  const Misfits misfits(soup, limits_for(options, elements, bodies), context);
+  const Brought brought = bring_together(soup, misfits, context);
+  const ClosedGaps& closed = brought.closed;
+  const Arrangement& arranged = brought.arranged;
   const Cells cells(arranged.points, arranged.triangles, context);
 
   std::vector<std::uint32_t> body_of;
   for (const std::uint32_t t : closed.source) body_of.push_back(all.body[t]);
-  const std::vector<Windings> windings = windings_of_bodies(arranged, cells, body_of);
+  std::vector<Windings> windings = windings_of_bodies(arranged, cells, body_of);
   Labelled labelled{arranged, cells, {}, {}};
+  labelled.has_sheets = false;
   for (const Body& b : bodies) labelled.names.push_back(b.name);
   labelled.region = regions_of(windings, options.overlap, labelled.names);
   const std::size_t end_of_common = labelled.names.size();
   if (options.within_first) empty_outside_first(windings, bodies, labelled);
-  const std::uint64_t filled = fill_gaps(labelled, tolerance);
+  const Slivers::Given slivers = Slivers(labelled, windings, body_of, misfits).give_away();
+  // From here on nobody overlaps in them.
+  for (std::size_t c = 0; c < windings.size(); ++c)
+    if (slivers.is_sliver[c]) windings[c].clear();
   const bool earlier = options.overlap == Overlap::kFirst;
   if (options.overlap != Overlap::kNew)
     refuse_covered_bodies(labelled, bodies, windings, earlier, options.within_first ? 1 : 0);
@@ -324,12 +481,14 @@ Joined joined_bodies(const std::vector<Body>& bodies, const ComplexOptions& opti
     }
     return Face{patches.patch_of(all.body[face], all.patch[face], others), all.source[face]};
   });
+  dissolve_imprints(complex, all, misfits, context);
   complex.surface.patch_names = patches.names();
   // Said of the regions, from whose names these are made.
   NameCleaning().clean(complex.surface.patch_names);
   std::vector<std::string> notes = std::move(before.notes);
-  note_changes(closed, tolerance, arranged, notes);
-  if (filled > 0) notes.push_back(fmt::format("{} between bodies closed", counted(filled, "thin gap")));
+  const double moved = slivers.volume + moved_volume(all, closed, bodies.size());
+  note_changes(closed, in_words(misfits, bodies), moved, misfits.floor(), arranged, notes);
+  if (slivers.count > 0) notes.push_back(fmt::format("{} between bodies closed", counted(slivers.count, "thin gap")));
   note_overlaps(labelled, windings, bodies, earlier ? "first" : "later", notes);
   note_common_regions(labelled, bodies.size(), end_of_common, notes);
   notes.insert(notes.end(), complex.notes.begin(), complex.notes.end());
@@ -337,10 +496,15 @@ Joined joined_bodies(const std::vector<Body>& bodies, const ComplexOptions& opti
   return {std::move(complex), are_nested(windings)};
 }
 
+Complex join_bodies(const std::vector<Body>& bodies, const ComplexOptions& options, const ElementsToCome& elements,
+                    const RunContext& context) {
+  return joined_bodies(bodies, options, elements, context).complex;
+}
+
 }  // namespace cells
 
 Complex join_bodies(const std::vector<Body>& bodies, const ComplexOptions& options, const RunContext& context) {
-  return cells::joined_bodies(bodies, options, context).complex;
+  return cells::joined_bodies(bodies, options, {}, context).complex;
 }
 
 }  // namespace octafront

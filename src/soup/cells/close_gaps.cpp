@@ -10,15 +10,24 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <functional>
 #include <map>
 #include <numeric>
 #include <optional>
 #include <set>
+#include <unordered_map>
+#include <utility>
 
 namespace octafront::cells {
 namespace {
 
 using arrangement::PlaneMesh;
+
+/// What goes along a wall rather than across it goes by no more than this part of the edges there: they stay edges.
+constexpr double kOfEdge = 0.25;
+/// Walls of later bodies are bent to what is that many times farther away than their own vertices were moved: where
+/// these came nearer, the middle went away.
+constexpr double kBend = 1.5;
 
 Box3 grown(Box3 box, double by) {
   box.lo -= Vec3{by, by, by};
@@ -26,11 +35,9 @@ Box3 grown(Box3 box, double by) {
   return box;
 }
 
-/// Where two segments come nearest to each other, on the first one; nullopt if that is at an end of either, or they run
-/// side by side.
+/// Where two segments come nearest to each other; nullopt if that is at an end of either, or they run side by side.
 struct GapMeeting {
-  Vec3 at;
-  double distance;
+  Vec3 at, other;
 };
 std::optional<GapMeeting> inner_meeting(Vec3 a, Vec3 b, Vec3 c, Vec3 d) {
   const Vec3 u = b - a, v = d - c, w = a - c;
@@ -41,168 +48,331 @@ std::optional<GapMeeting> inner_meeting(Vec3 a, Vec3 b, Vec3 c, Vec3 d) {
   if (!(det > kParallel * uu * vv)) return std::nullopt;
   const double s = (uv * vw - vv * uw) / det, t = (uu * vw - uv * uw) / det;
   if (!(s > 0 && s < 1 && t > 0 && t < 1)) return std::nullopt;
-  const Vec3 p = a + s * u, q = c + t * v;
-  return GapMeeting{p, distance(p, q)};
+  return GapMeeting{a + s * u, c + t * v};
 }
 
-/// Brings bodies together step by step.
-class Closing {
- public:
-  Closing(const BodySoup& soup, double tolerance, const RunContext& context)
-      : triangles_(soup.triangles), body_(soup.body), tolerance_(tolerance), context_(context) {
-    closed_.points = soup.points;
-  }
+struct BodyFace {
+  Triangle corners;
+  std::uint32_t body, source;
+};
 
-  ClosedGaps result() {
-    move_vertices();
-    merge_equal_points();
-    const TriangleTree tree(closed_.points, triangles_);
-    find_contacts(tree);
-    divide_edges();
-    for (std::uint32_t t = 0; t < triangles_.size(); ++t) {
-      if (t % 1024 == 0) context_.check();
-      divide(t);
+/// Shortest edges at vertices.
+class Lengths {
+ public:
+  explicit Lengths(const std::vector<Vec3>& points) : points_(points) {}
+  void add(const Triangle& t) {
+    for (int i = 0; i < 3; ++i) {
+      const VertexIndex a = t[i], b = t[(i + 1) % 3];
+      const double d = distance(points_[a], points_[b]);
+      if (d == 0) continue;
+      for (const VertexIndex v : {a, b}) {
+        if (v >= shortest_.size()) shortest_.resize(points_.size(), TriangleTree::kFar);
+        shortest_[v] = std::min(shortest_[v], d);
+      }
     }
-    return std::move(closed_);
   }
+  double at(VertexIndex v) const { return v < shortest_.size() ? shortest_[v] : TriangleTree::kFar; }
 
  private:
-  const std::vector<Vec3>& points() const { return closed_.points; }
-  TriangleCorners corners(std::uint32_t t) const {
-    const auto [a, b, c] = triangles_[t];
-    return {points()[a], points()[b], points()[c]};
-  }
+  const std::vector<Vec3>& points_;
+  std::vector<double> shortest_;
+};
 
-  /// Vertices of each body but the first go onto what earlier ones have within the tolerance.
-  void move_vertices() {
-    const std::uint32_t bodies = body_.empty() ? 0 : 1 + *std::max_element(body_.begin(), body_.end());
-    for (std::uint32_t b = 1; b < bodies; ++b) {
-      context_.check();
-      std::vector<Triangle> earlier;
-      std::set<VertexIndex> vertices;
-      for (std::size_t t = 0; t < triangles_.size(); ++t) {
-        if (body_[t] < b) earlier.push_back(triangles_[t]);
-        if (body_[t] == b) vertices.insert(triangles_[t].begin(), triangles_[t].end());
+/// One side of a meeting: faces, with what it takes to find them.
+struct Party {
+  std::vector<BodyFace> faces;
+  std::vector<Triangle> triangles;
+  std::vector<Vec3> normals;
+  std::map<VertexIndex, std::vector<std::uint32_t>> around;
+  std::set<Edge> ends;  ///< where sheets end
+  std::set<VertexIndex> end_vertices;
+  std::set<Edge> sharp;
+  std::set<VertexIndex> sharp_vertices;
+
+  Party(std::vector<BodyFace> given, const std::vector<Vec3>& points) : faces(std::move(given)) {
+    for (const BodyFace& f : faces) {
+      const auto [a, b, c] = f.corners;
+      triangles.push_back(f.corners);
+      normals.push_back(unit_normal(points[a], points[b], points[c]));
+    }
+    find_around();
+    find_ends();
+  }
+  void find_ends() {
+    ends.clear();
+    end_vertices.clear();
+    sharp.clear();
+    sharp_vertices.clear();
+    std::map<Edge, std::vector<std::uint32_t>> uses;
+    for (std::uint32_t t = 0; t < triangles.size(); ++t)
+      for (int i = 0; i < 3; ++i) uses[sorted_edge(triangles[t][i], triangles[t][(i + 1) % 3])].push_back(t);
+    for (const auto& [e, of] : uses) {
+      if (e[0] == e[1]) continue;
+      if (of.size() != 2 || !is_curved(normals[of[0]], normals[of[1]])) {
+        sharp.insert(e);
+        sharp_vertices.insert(e.begin(), e.end());
       }
-      const TriangleTree tree(closed_.points, earlier);
-      for (const VertexIndex v : vertices) move_vertex(v, tree, earlier);
+      if (of.size() != 1) continue;
+      ends.insert(e);
+      end_vertices.insert(e.begin(), e.end());
     }
   }
+  void find_around() {
+    around.clear();
+    for (std::uint32_t t = 0; t < triangles.size(); ++t)
+      for (const VertexIndex v : triangles[t]) around[v].push_back(t);
+  }
+};
 
-  /// To a vertex rather than an edge, to an edge rather than a face.
-  void move_vertex(VertexIndex v, const TriangleTree& tree, const std::vector<Triangle>& earlier) {
-    const Vec3 p = closed_.points[v];
-    std::array<double, 3> least{tolerance_, tolerance_, tolerance_};
-    std::array<std::optional<Vec3>, 3> target;
-    const auto offer = [&](std::size_t kind, Vec3 q) {
+/// A body that comes to those before it.
+class BodyMeeting {
+ public:
+  BodyMeeting(std::vector<Vec3>& points, std::vector<BodyFace> earlier, std::vector<BodyFace> later,
+              const Misfits& misfits, const Lengths& lengths, Closes what, const RunContext& context)
+      : points_(points),
+        earlier_(std::move(earlier), points),
+        later_(std::move(later), points),
+        body_(later_.faces.front().body),
+        misfits_(misfits),
+        lengths_(lengths),
+        what_(what),
+        context_(context) {
+    for (const BodyFace& f : earlier_.faces) most_ = std::max(most_, reach(f));
+  }
+
+  void run() {
+    const TriangleTree earlier(points_, earlier_.triangles);
+    move_vertices(earlier);
+    merge_equal_points();
+    for (const Triangle& t : earlier_.triangles)
+      for (int i = 0; i < 3; ++i) kept_edges_.push_back(sorted_edge(t[i], t[(i + 1) % 3]));
+    std::sort(kept_edges_.begin(), kept_edges_.end());
+    const TriangleTree later(points_, later_.triangles);
+    put_vertices_on(later, earlier_, later_, inside_later_, true);
+    put_vertices_on(earlier, later_, earlier_, inside_earlier_, false);
+    cross_edges(earlier);
+    divide(earlier_, inside_earlier_, divided_earlier);
+    divide(later_, inside_later_, divided_later);
+  }
+
+  std::vector<BodyFace> divided_earlier, divided_later;
+  std::uint64_t moved = 0;
+  double largest_move = 0;
+
+ private:
+  double reach(const BodyFace& f) const { return misfits_.reach(f.body, body_); }
+  TriangleCorners corners(const Triangle& t) const { return {points_[t[0]], points_[t[1]], points_[t[2]]}; }
+  bool is_degenerate(const Triangle& t) const {
+    return t[0] == t[1] || t[1] == t[2] || t[2] == t[0] || collinear(points_[t[0]], points_[t[1]], points_[t[2]]);
+  }
+
+  bool faces_wall(const Party& of, VertexIndex v, Vec3 normal, Vec3 way) const {
+    if (&of == &later_ && of.end_vertices.contains(v)) return true;
+    const std::vector<std::uint32_t>& around = of.around.at(v);
+    return std::any_of(around.begin(), around.end(),
+                       [&](std::uint32_t t) { return face_each_other(of.normals[t], normal, way); });
+  }
+
+  void move_vertices(const TriangleTree& tree) {
+    // The largest misfit first: where three bodies meet, corners are near each other only once they are on the same
+    // wall.
+    std::set<double, std::greater<>> reaches;
+    for (const BodyFace& f : earlier_.faces) reaches.insert(reach(f));
+    for (const double r : reaches)
+      for (const auto& [v, around] : later_.around) move_vertex(v, tree, r);
+  }
+
+  /// Onto the nearest place of a wall that it belongs to: to a vertex rather than an edge, to an edge rather than a
+  /// face, if these are near beside the edges there.
+  void move_vertex(VertexIndex v, const TriangleTree& tree, double of_reach) {
+    const Vec3 p = points_[v];
+    const double floor = misfits_.floor();
+    const bool is_fixed = what_ == Closes::kRims && !later_.sharp_vertices.contains(v);
+    double nearest = TriangleTree::kFar, bound = 0;
+    Vec3 at;
+    tree.for_each_box_near(grown({p, p}, of_reach), [&](std::uint32_t t, const TriangleCorners& c) {
+      if (reach(earlier_.faces[t]) != of_reach) return true;
+      const Vec3 q = closest_point_on_triangle(p, c[0], c[1], c[2]);
+      const double d = distance(p, q), r = is_fixed ? floor : of_reach;
+      if (d > r || d >= nearest) return true;
+      if (d > floor && !faces_wall(later_, v, earlier_.normals[t], p - q)) return true;
+      nearest = d;
+      at = q;
+      bound = r;
+      return true;
+    });
+    if (!(nearest <= bound)) return;
+    // Up to rounding what is nearest, whatever the edges.
+    const double here = nearest * (1 + 1e-9);
+    std::array<double, 2> least{TriangleTree::kFar, TriangleTree::kFar};
+    std::array<Vec3, 2> target;
+    const auto offer = [&](std::size_t kind, Vec3 q, double edge) {
       const double d = distance(p, q);
-      if (d > least[kind]) return;
+      if (d > std::max({here, floor, std::min(bound, kOfEdge * std::min(edge, lengths_.at(v)))})) return;
+      if (d >= least[kind]) return;
       least[kind] = d;
       target[kind] = q;
     };
-    Box3 here;
-    here.add(p);
-    tree.for_each_box_near(grown(here, tolerance_), [&](std::uint32_t t, const TriangleCorners& c) {
+    tree.for_each_box_near(grown({p, p}, bound), [&](std::uint32_t t, const TriangleCorners&) {
+      if (reach(earlier_.faces[t]) != of_reach) return true;
       for (int i = 0; i < 3; ++i) {
-        offer(0, c[i]);
+        const Triangle& corners = earlier_.triangles[t];
+        offer(0, points_[corners[i]], lengths_.at(corners[i]));
         // The same point from both sides of an edge.
-        const Edge e = sorted_edge(earlier[t][i], earlier[t][(i + 1) % 3]);
-        offer(1, closest_point_on_segment(p, points()[e[0]], points()[e[1]]));
+        const Edge e = sorted_edge(corners[i], corners[(i + 1) % 3]);
+        offer(1, closest_point_on_segment(p, points_[e[0]], points_[e[1]]), distance(points_[e[0]], points_[e[1]]));
       }
-      offer(2, closest_point_on_triangle(p, c[0], c[1], c[2]));
       return true;
     });
-    for (const auto& to : target) {
-      if (!to) continue;
-      if (*to == p) return;
-      ++closed_.moved;
-      closed_.largest_move = std::max(closed_.largest_move, distance(p, *to));
-      closed_.points[v] = *to;
-      return;
-    }
+    if (least[1] < TriangleTree::kFar) at = target[1];
+    if (least[0] < TriangleTree::kFar) at = target[0];
+    if (at == p) return;
+    ++moved;
+    largest_move = std::max(largest_move, distance(p, at));
+    points_[v] = at;
   }
 
   void merge_equal_points() {
     std::map<std::array<double, 3>, VertexIndex> first;
-    std::vector<VertexIndex> number(points().size());
-    for (VertexIndex v = 0; v < number.size(); ++v) {
-      const Vec3 p = points()[v];
-      number[v] = first.try_emplace({p.x + 0.0, p.y + 0.0, p.z + 0.0}, v).first->second;
+    const auto number = [&](VertexIndex v) {
+      const Vec3 p = points_[v];
+      return first.try_emplace({p.x + 0.0, p.y + 0.0, p.z + 0.0}, v).first->second;
+    };
+    for (const auto& [v, around] : earlier_.around) number(v);
+    for (Triangle& t : later_.triangles)
+      for (VertexIndex& v : t) v = number(v);
+    later_.find_around();
+    later_.find_ends();
+  }
+
+  /// Whether the edge of the later body is where a sheet ends: that goes on to walls any way.
+  bool is_end(const Edge& e) const { return later_.ends.contains(e); }
+  bool is_near_end(Vec3 p, const Triangle& t, double within) const {
+    for (int i = 0; i < 3; ++i) {
+      const Edge e = sorted_edge(t[i], t[(i + 1) % 3]);
+      if (is_end(e) && distance(p, closest_point_on_segment(p, points_[e[0]], points_[e[1]])) <= within) return true;
     }
-    for (Triangle& t : triangles_)
-      for (VertexIndex& v : t) v = number[v];
+    return false;
   }
 
-  bool is_corner(std::uint32_t t, VertexIndex v) const {
-    return std::find(triangles_[t].begin(), triangles_[t].end(), v) != triangles_[t].end();
+  bool is_kept(const Edge& e) const { return std::binary_search(kept_edges_.begin(), kept_edges_.end(), e); }
+
+  /// Vertices that belong to walls of the other party, on its edges or faces; earlier walls take what lies on them.
+  void put_vertices_on(const TriangleTree& tree, const Party& of, const Party& on,
+                       std::map<std::uint32_t, std::vector<VertexIndex>>& inside, bool bends) {
+    for (const auto& [v, around] : of.around) {
+      if (on.around.contains(v)) continue;
+      double most = misfits_.floor();
+      if (bends && (what_ == Closes::kWalls || of.sharp_vertices.contains(v)))
+        for (const std::uint32_t t : around) most = std::max(most, kBend * reach(of.faces[t]));
+      put_vertex_on(v, most, tree, of, on, inside, bends);
+    }
   }
 
-  bool is_degenerate(std::uint32_t t) const {
-    const auto [a, b, c] = triangles_[t];
-    return a == b || b == c || c == a || collinear(points()[a], points()[b], points()[c]);
-  }
-
-  /// Vertices near edges and faces of other bodies, and edges near edges.
-  void find_contacts(const TriangleTree& tree) {
-    std::set<std::array<Edge, 2>> compared;
-    inside_.resize(triangles_.size());
-    for (std::uint32_t t = 0; t < triangles_.size(); ++t) {
-      if (t % 1024 == 0) context_.check();
-      if (is_degenerate(t)) continue;
-      Box3 box;
-      for (const Vec3 p : corners(t)) box.add(p);
-      tree.for_each_box_near(grown(box, tolerance_), [&](std::uint32_t s, const TriangleCorners&) {
-        if (body_[s] == body_[t] || is_degenerate(s)) return true;
-        for (const VertexIndex v : triangles_[s]) note_vertex(v, t);
-        for (int i = 0; i < 3 && body_[s] > body_[t]; ++i)
-          for (int j = 0; j < 3; ++j) {
-            const Edge e = sorted_edge(triangles_[t][i], triangles_[t][(i + 1) % 3]);
-            const Edge f = sorted_edge(triangles_[s][j], triangles_[s][(j + 1) % 3]);
-            if (compared.insert({e, f}).second) note_edges(e, f);
-          }
+  void put_vertex_on(VertexIndex v, double most, const TriangleTree& tree, const Party& of, const Party& on,
+                     std::map<std::uint32_t, std::vector<VertexIndex>>& inside, bool bends) {
+    const Vec3 p = points_[v];
+    const double floor = misfits_.floor();
+    double nearest = TriangleTree::kFar;
+    std::uint32_t face = kNone;
+    const auto each_near = [&](double within, auto&& visit) {
+      tree.for_each_box_near(grown({p, p}, within), [&](std::uint32_t t, const TriangleCorners& c) {
+        if (is_degenerate(on.triangles[t])) return true;
+        visit(t, c);
         return true;
       });
+    };
+    each_near(most, [&](std::uint32_t t, const TriangleCorners& c) {
+      const Vec3 q = closest_point_on_triangle(p, c[0], c[1], c[2]);
+      const double d = distance(p, q);
+      if (d > most || d > nearest || (d == nearest && t > face)) return;
+      if (d > floor && !faces_wall(of, v, on.normals[t], p - q) &&
+          !(bends && is_near_end(p, on.triangles[t], d * (1 + 1e-9))))
+        return;
+      nearest = d;
+      face = t;
+    });
+    if (face == kNone) return;
+    double least = TriangleTree::kFar;
+    std::vector<std::pair<double, Edge>> edges;
+    each_near(std::max(nearest, floor) * (1 + 1e-9), [&](std::uint32_t t, const TriangleCorners&) {
+      for (int i = 0; i < 3; ++i) {
+        const Edge e = sorted_edge(on.triangles[t][i], on.triangles[t][(i + 1) % 3]);
+        if (bends && is_kept(e)) continue;
+        const double d = distance(p, closest_point_on_segment(p, points_[e[0]], points_[e[1]]));
+        const double along = bends ? std::min(most, kOfEdge * distance(points_[e[0]], points_[e[1]])) : 0;
+        if (d > std::max({floor, nearest * (1 + 1e-9), along})) continue;
+        edges.emplace_back(d, e);
+        least = std::min(least, d);
+      }
+    });
+    if (edges.empty()) {
+      inside[face].push_back(v);
+      return;
     }
-    for (auto& inside : inside_) {
-      std::sort(inside.begin(), inside.end());
-      inside.erase(std::unique(inside.begin(), inside.end()), inside.end());
+    for (const auto& [d, e] : edges)
+      if (d <= std::max(floor, least)) on_edge_[e].insert(v);
+  }
+
+  /// Edges that pass each other on one wall get a vertex there, on the earlier one's.
+  void cross_edges(const TriangleTree& tree) {
+    std::set<std::array<Edge, 2>> crossed;
+    for (std::uint32_t s = 0; s < later_.triangles.size(); ++s) {
+      if (s % 1024 == 0) context_.check();
+      if (is_degenerate(later_.triangles[s])) continue;
+      tree.for_each_box_near(grown(box_of(corners(later_.triangles[s])), kBend * most_),
+                             [&](std::uint32_t t, const TriangleCorners&) {
+                               cross_edges_of(t, s, crossed);
+                               return true;
+                             });
     }
   }
 
-  void note_vertex(VertexIndex v, std::uint32_t t) {
-    if (is_corner(t, v)) return;
-    const Vec3 p = points()[v];
-    const TriangleCorners c = corners(t);
-    if (distance(p, closest_point_on_triangle(p, c[0], c[1], c[2])) > tolerance_) return;
-    bool on_edge = false;
-    for (int i = 0; i < 3; ++i) {
-      const Edge e = sorted_edge(triangles_[t][i], triangles_[t][(i + 1) % 3]);
-      if (distance(p, closest_point_on_segment(p, points()[e[0]], points()[e[1]])) > tolerance_) continue;
-      on_edge_[e].insert(v);
-      on_edge = true;
-    }
-    if (!on_edge) inside_[t].push_back(v);
+  void cross_edges_of(std::uint32_t t, std::uint32_t s, std::set<std::array<Edge, 2>>& crossed) {
+    const double most = std::max(misfits_.floor(), kBend * reach(earlier_.faces[t]));
+    for (int i = 0; i < 3; ++i)
+      for (int j = 0; j < 3; ++j) {
+        const Edge e = sorted_edge(earlier_.triangles[t][i], earlier_.triangles[t][(i + 1) % 3]);
+        const Edge f = sorted_edge(later_.triangles[s][j], later_.triangles[s][(j + 1) % 3]);
+        if (e[0] == f[0] || e[0] == f[1] || e[1] == f[0] || e[1] == f[1] || is_kept(f)) continue;
+        const auto meeting = inner_meeting(points_[e[0]], points_[e[1]], points_[f[0]], points_[f[1]]);
+        if (!meeting) continue;
+        const Vec3 way = meeting->at - meeting->other;
+        if (length(way) > most) continue;
+        if (length(way) > misfits_.floor() && what_ == Closes::kRims && !earlier_.sharp.contains(e) &&
+            !later_.sharp.contains(f))
+          continue;
+        if (length(way) > misfits_.floor() && !is_end(f) &&
+            !face_each_other(later_.normals[s], earlier_.normals[t], way))
+          continue;
+        if (crossed.insert({e, f}).second) cross(e, f, *meeting, most);
+      }
   }
 
-  /// Edges that pass each other within the tolerance get a vertex there, on the earlier one's.
-  void note_edges(const Edge& e, const Edge& f) {
-    if (e[0] == f[0] || e[0] == f[1] || e[1] == f[0] || e[1] == f[1]) return;
-    const auto meeting = inner_meeting(points()[e[0]], points()[e[1]], points()[f[0]], points()[f[1]]);
-    if (!meeting || meeting->distance > tolerance_) return;
-    // Not where an end of one lies on the other.
-    for (const VertexIndex v : {e[0], e[1], f[0], f[1]})
-      if (distance(points()[v], meeting->at) <= tolerance_) return;
+  void cross(const Edge& e, const Edge& f, const GapMeeting& meeting, double most) {
     std::set<VertexIndex>& on_e = on_edge_[e];
     std::set<VertexIndex>& on_f = on_edge_[f];
-    for (const std::set<VertexIndex>* known : {&on_e, &on_f})
-      for (const VertexIndex v : *known)
-        if (distance(points()[v], meeting->at) <= tolerance_) {
-          on_e.insert(v);
-          on_f.insert(v);
-          return;
-        }
-    const auto v = static_cast<VertexIndex>(points().size());
-    closed_.points.push_back(meeting->at);
+    const double shorter = std::min(distance(points_[e[0]], points_[e[1]]), distance(points_[f[0]], points_[f[1]]));
+    const double near = std::max(misfits_.floor(), std::min(most, kOfEdge * shorter));
+    // What lies on the earlier edge there is where the later one goes through.
+    std::optional<VertexIndex> known;
+    double least = near;
+    const auto offer = [&](VertexIndex v) {
+      const double d = distance(points_[v], meeting.at);
+      if (d > least) return;
+      least = d;
+      known = v;
+    };
+    for (const VertexIndex v : e) offer(v);
+    for (const VertexIndex v : on_e) offer(v);
+    if (known) {
+      if (*known != f[0] && *known != f[1]) on_f.insert(*known);
+      return;
+    }
+    for (const VertexIndex v : f)
+      if (distance(points_[v], meeting.at) <= misfits_.floor()) return;
+    const auto v = static_cast<VertexIndex>(points_.size());
+    points_.push_back(meeting.at);
     on_e.insert(v);
     on_f.insert(v);
   }
@@ -213,109 +383,217 @@ class Closing {
     if (const auto found = on_edge_.find(e); found != on_edge_.end())
       for (const VertexIndex v : found->second)
         if (v != e[0] && v != e[1]) line.push_back(v);
-    const Vec3 from = points()[e[0]], to = points()[e[1]];
+    const Vec3 from = points_[e[0]], to = points_[e[1]];
     std::sort(line.begin() + 1, line.end(), [&](VertexIndex a, VertexIndex b) {
-      return std::pair(dot(points()[a] - from, to - from), a) < std::pair(dot(points()[b] - from, to - from), b);
+      return std::pair(dot(points_[a] - from, to - from), a) < std::pair(dot(points_[b] - from, to - from), b);
     });
     line.push_back(e[1]);
     return line;
   }
 
-  /// All edges as they are once divided, at their vertices.
-  void divide_edges() {
-    neighbours_.resize(points().size());
-    for (std::uint32_t t = 0; t < triangles_.size(); ++t) {
-      if (is_degenerate(t)) continue;
-      for (int i = 0; i < 3; ++i) {
-        const auto line = along(sorted_edge(triangles_[t][i], triangles_[t][(i + 1) % 3]));
-        for (std::size_t k = 0; k + 1 < line.size(); ++k) add_edge(line[k], line[k + 1]);
-      }
+  using Border = std::vector<std::array<VertexIndex, 2>>;
+
+  Border border_of(const Triangle& t) const {
+    Border border;
+    for (int i = 0; i < 3; ++i) {
+      std::vector<VertexIndex> line = along(sorted_edge(t[i], t[(i + 1) % 3]));
+      if (t[i] > t[(i + 1) % 3]) std::reverse(line.begin(), line.end());
+      for (std::size_t k = 0; k + 1 < line.size(); ++k) border.push_back({line[k], line[k + 1]});
+    }
+    return border;
+  }
+
+  void divide(const Party& party, std::map<std::uint32_t, std::vector<VertexIndex>>& inside,
+              std::vector<BodyFace>& divided) {
+    std::vector<Border> borders;
+    for (const Triangle& t : party.triangles) {
+      borders.push_back(is_degenerate(t) ? Border{} : border_of(t));
+      for (const auto& [a, b] : borders.back()) add_edge(a, b);
+    }
+    for (std::uint32_t t = 0; t < party.triangles.size(); ++t) {
+      if (t % 1024 == 0) context_.check();
+      if (borders[t].empty()) continue;
+      const auto within = inside.find(t);
+      BodyFace face = party.faces[t];
+      face.corners = party.triangles[t];
+      if (borders[t].size() == 3 && within == inside.end())
+        divided.push_back(face);
+      else
+        divide(face, borders[t], within == inside.end() ? std::vector<VertexIndex>{} : within->second, divided);
     }
   }
 
   void add_edge(VertexIndex a, VertexIndex b) {
-    neighbours_[a].insert(b);
-    neighbours_[b].insert(a);
+    neighbours_[a].push_back(b);
+    neighbours_[b].push_back(a);
   }
 
   /// The triangle divided at what lies on it, along the edges of other bodies between.
-  void divide(std::uint32_t t) {
-    if (is_degenerate(t)) return;
-    std::vector<std::array<VertexIndex, 2>> border;
-    for (int i = 0; i < 3; ++i) {
-      const VertexIndex a = triangles_[t][i], b = triangles_[t][(i + 1) % 3];
-      const auto line = along(sorted_edge(a, b));
-      for (std::size_t k = 0; k + 1 < line.size(); ++k) border.push_back({line[k], line[k + 1]});
-    }
-    if (border.size() == 3 && inside_[t].empty()) {
-      add(triangles_[t], t);
-      return;
-    }
-    divide(t, border);
-  }
-
-  void divide(std::uint32_t t, const std::vector<std::array<VertexIndex, 2>>& border) {
-    const TriangleCorners c = corners(t);
+  void divide(const BodyFace& face, const Border& border, std::vector<VertexIndex> local,
+              std::vector<BodyFace>& divided) {
+    const TriangleCorners c = corners(face.corners);
     const Vec3 n = double_area_normal(c[0], c[1], c[2]);
     const double x = std::abs(n.x), y = std::abs(n.y), z = std::abs(n.z);
     const int axis = x >= y && x >= z ? 0 : y >= z ? 1 : 2;
-    std::vector<VertexIndex> local = inside_[t];
-    for (const auto& [a, b] : border) local.insert(local.end(), {a, b});
+    for (const auto& [a, b] : border) local.push_back(a);
     std::sort(local.begin(), local.end());
     local.erase(std::unique(local.begin(), local.end()), local.end());
     Box3 box;
-    for (const VertexIndex v : local) box.add(points()[v]);
+    for (const VertexIndex v : local) box.add(points_[v]);
 
     PlaneMesh mesh(arrangement::plane_through(c[0], c[1], c[2]), axis, box);
     std::map<VertexIndex, PlaneMesh::Node> node;
     std::map<PlaneMesh::Node, VertexIndex> vertex;
     for (const VertexIndex v : local) {
-      node[v] = mesh.add_point({points()[v]});
+      node[v] = mesh.add_point({points_[v]});
       vertex.try_emplace(node[v], v);
     }
-    const auto add_segment = [&](VertexIndex a, VertexIndex b, std::uint32_t face) {
+    const auto add_segment = [&](VertexIndex a, VertexIndex b, std::uint32_t of) {
       if (node[a] == node[b]) return;
-      mesh.add_segment(node[a], node[b], arrangement::plane_along_axis(points()[a], points()[b], axis), face);
+      mesh.add_segment(node[a], node[b], arrangement::plane_along_axis(points_[a], points_[b], axis), of);
     };
-    for (const auto& [a, b] : border) add_segment(a, b, 0);
-    for (const VertexIndex a : local)
-      for (const VertexIndex b : neighbours_[a])
-        if (a < b && std::binary_search(local.begin(), local.end(), b)) add_segment(a, b, kNone);
+    const auto turn = [&](VertexIndex a, VertexIndex b, VertexIndex v) {
+      return arrangement::orient_along(axis, {points_[a]}, {points_[b]}, {points_[v]});
+    };
+    const auto leaves = [&](VertexIndex a, VertexIndex b) {
+      return std::any_of(border.begin(), border.end(), [&](const auto& e) {
+        return turn(a, b, e[0]) * turn(a, b, e[1]) < 0 && turn(e[0], e[1], a) * turn(e[0], e[1], b) < 0;
+      });
+    };
+    for (const auto& [a, b] : border) add_segment(std::min(a, b), std::max(a, b), 0);
+    for (const VertexIndex a : local) {
+      std::vector<VertexIndex>& others = neighbours_[a];
+      std::sort(others.begin(), others.end());
+      others.erase(std::unique(others.begin(), others.end()), others.end());
+      for (const VertexIndex b : others)
+        if (a < b && std::binary_search(local.begin(), local.end(), b) && !leaves(a, b)) add_segment(a, b, kNone);
+    }
     mesh.improve();
+    const auto first_new = static_cast<VertexIndex>(points_.size());
     for (std::size_t i = 0; i < mesh.crossings().size(); ++i) {
-      vertex[mesh.first_crossing_node(i)] = static_cast<VertexIndex>(points().size());
-      closed_.points.push_back(mesh.crossings()[i].at);
-      neighbours_.emplace_back();
+      vertex[mesh.first_crossing_node(i)] = static_cast<VertexIndex>(points_.size());
+      points_.push_back(mesh.crossings()[i].at);
     }
-    const bool turned = arrangement::orient_along(axis, {c[0]}, {c[1]}, {c[2]}) < 0;
+    const bool turned = turn(face.corners[0], face.corners[1], face.corners[2]) < 0;
+    std::vector<Triangle> made;
     for (const PlaneMesh::Piece& piece : mesh.pieces()) {
-      Triangle made{vertex[piece.corners[0]], vertex[piece.corners[1]], vertex[piece.corners[2]]};
-      if (turned) std::swap(made[1], made[2]);
+      made.push_back({vertex[piece.corners[0]], vertex[piece.corners[1]], vertex[piece.corners[2]]});
+      if (turned) std::swap(made.back()[1], made.back()[2]);
+    }
+    if (!fills(made, border)) {
+      points_.resize(first_new);
+      made.clear();
+      for (const auto& [a, b] : border)
+        if (a != border.front()[0] && b != border.front()[0]) made.push_back({border.front()[0], a, b});
+    }
+    for (const Triangle& t : made) {
       // Later triangles at the same place are divided in the same way.
-      for (int i = 0; i < 3; ++i) add_edge(made[i], made[(i + 1) % 3]);
-      add(made, t);
+      for (int i = 0; i < 3; ++i) add_edge(t[i], t[(i + 1) % 3]);
+      divided.push_back({t, face.body, face.source});
     }
   }
 
-  void add(const Triangle& triangle, std::uint32_t source) {
-    closed_.triangles.push_back(triangle);
-    closed_.source.push_back(source);
+  /// Whether the pieces have that border: where it was bent so far that it crosses itself they have not.
+  static bool fills(const std::vector<Triangle>& pieces, const Border& border) {
+    std::map<Edge, int> ways;
+    const auto add = [&](VertexIndex a, VertexIndex b, int times) {
+      ways[sorted_edge(a, b)] += a < b ? times : -times;
+    };
+    for (const Triangle& t : pieces)
+      for (int i = 0; i < 3; ++i) add(t[i], t[(i + 1) % 3], 1);
+    for (const auto& [a, b] : border) add(a, b, -1);
+    return std::all_of(ways.begin(), ways.end(), [](const auto& way) { return way.second == 0; });
   }
 
-  std::vector<Triangle> triangles_;
-  const std::vector<std::uint32_t>& body_;
-  double tolerance_;
+  std::vector<Vec3>& points_;
+  Party earlier_, later_;
+  std::uint32_t body_;
+  const Misfits& misfits_;
+  const Lengths& lengths_;
+  Closes what_;
+  const RunContext& context_;
+  double most_ = 0;
+  std::vector<Edge> kept_edges_;  ///< of earlier bodies, sorted
+  std::map<Edge, std::set<VertexIndex>> on_edge_;
+  std::map<std::uint32_t, std::vector<VertexIndex>> inside_earlier_, inside_later_;  ///< per triangle
+  std::unordered_map<VertexIndex, std::vector<VertexIndex>> neighbours_;             ///< by divided edges
+};
+
+/// One body after the other comes to those that are together already.
+class Closing {
+ public:
+  Closing(const BodySoup& soup, const Misfits& misfits, Closes what, const RunContext& context)
+      : soup_(soup), misfits_(misfits), what_(what), context_(context), lengths_(closed_.points) {
+    closed_.points = soup.points;
+  }
+
+  ClosedGaps result() {
+    std::vector<std::vector<BodyFace>> bodies(misfits_.bodies());
+    for (std::uint32_t t = 0; t < soup_.triangles.size(); ++t)
+      bodies[soup_.body[t]].push_back({soup_.triangles[t], soup_.body[t], t});
+    boxes_.resize(bodies.size());
+    together_.resize(bodies.size());
+    for (std::uint32_t b = 0; b < bodies.size(); ++b) {
+      context_.check();
+      for (const BodyFace& f : bodies[b]) lengths_.add(f.corners);
+      for (const BodyFace& f : bodies[b]) boxes_[b].add(box_here(f));
+      if (!bodies[b].empty()) join(b, std::move(bodies[b]));
+    }
+    std::vector<BodyFace> all;
+    for (const std::vector<BodyFace>& faces : together_) all.insert(all.end(), faces.begin(), faces.end());
+    std::stable_sort(all.begin(), all.end(), [](const BodyFace& a, const BodyFace& b) { return a.source < b.source; });
+    for (const BodyFace& f : all) {
+      closed_.triangles.push_back(f.corners);
+      closed_.source.push_back(f.source);
+    }
+    return std::move(closed_);
+  }
+
+ private:
+  void join(std::uint32_t b, std::vector<BodyFace> body) {
+    std::vector<BodyFace> near;
+    for (std::uint32_t a = 0; a < b; ++a) {
+      const Box3 box = grown(boxes_[b], (1 + kBend) * misfits_.reach(a, b));
+      if (!boxes_[a].overlaps(box)) continue;
+      const auto from = std::stable_partition(together_[a].begin(), together_[a].end(),
+                                              [&](const BodyFace& f) { return !box_here(f).overlaps(box); });
+      near.insert(near.end(), from, together_[a].end());
+      together_[a].erase(from, together_[a].end());
+    }
+    if (near.empty()) {
+      together_[b] = std::move(body);
+      return;
+    }
+    BodyMeeting meeting(closed_.points, std::move(near), std::move(body), misfits_, lengths_, what_, context_);
+    meeting.run();
+    for (const std::vector<BodyFace>* divided : {&meeting.divided_earlier, &meeting.divided_later})
+      for (const BodyFace& f : *divided) {
+        together_[f.body].push_back(f);
+        lengths_.add(f.corners);
+        boxes_[f.body].add(box_here(f));
+      }
+    closed_.moved += meeting.moved;
+    closed_.largest_move = std::max(closed_.largest_move, meeting.largest_move);
+  }
+
+  Box3 box_here(const BodyFace& f) const {
+    return box_of({closed_.points[f.corners[0]], closed_.points[f.corners[1]], closed_.points[f.corners[2]]});
+  }
+
+  const BodySoup& soup_;
+  const Misfits& misfits_;
+  Closes what_;
   const RunContext& context_;
   ClosedGaps closed_;
-  std::map<Edge, std::set<VertexIndex>> on_edge_;
-  std::vector<std::vector<VertexIndex>> inside_;   ///< per triangle
-  std::vector<std::set<VertexIndex>> neighbours_;  ///< per vertex, by divided edges
+  Lengths lengths_;
+  std::vector<std::vector<BodyFace>> together_;  ///< per body
+  std::vector<Box3> boxes_;
 };
 
 }  // namespace
 
-ClosedGaps close_gaps(const BodySoup& soup, double tolerance, const RunContext& context) {
-  if (tolerance > 0) return Closing(soup, tolerance, context).result();
+ClosedGaps close_gaps(const BodySoup& soup, const Misfits& misfits, Closes what, const RunContext& context) {
+  if (misfits.floor() > 0) return Closing(soup, misfits, what, context).result();
   ClosedGaps same{soup.points, soup.triangles, {}, 0, 0};
   same.source.resize(soup.triangles.size());
   std::iota(same.source.begin(), same.source.end(), 0);

@@ -4,30 +4,29 @@
 #include <octafront/run_context.h>
 #include <octafront/vec.h>
 
+#include "soup/cells/misfit.h"
+
 #include <cstdint>
 #include <vector>
 
 namespace octafront::cells {
 
-/// Triangles of several bodies in one soup.
-struct BodySoup {
-  const std::vector<Vec3>& points;
-  const std::vector<Triangle>& triangles;
-  const std::vector<std::uint32_t>& body;  ///< per triangle; no vertex belongs to two bodies
-};
-
 /// The same triangles, brought together.
 struct ClosedGaps {
   std::vector<Vec3> points;
   std::vector<Triangle> triangles;
-  std::vector<std::uint32_t> source;  ///< per triangle: which one of the soup it is part of
+  std::vector<std::uint32_t> source;  ///< per triangle: which one of the soup it is part of; ascending
   std::uint64_t moved = 0;            ///< vertices
   double largest_move = 0;
 };
 
-/// Brings bodies together that are nearer than the tolerance: vertices of later bodies move onto vertices, edges and
-/// faces of earlier ones, and faces of each get the vertices and edges of the other that lie on them. What is left
-/// between is cells of less than the tolerance. With a tolerance of 0 nothing changes.
-ClosedGaps close_gaps(const BodySoup& soup, double tolerance, const RunContext& context);
+/// What comes together: all of the walls, or only where they end, at sharp edges: then what is between the walls is
+/// left to cells.
+enum class Closes { kWalls, kRims };
+
+/// Brings walls of bodies together that are nearer than their misfit: vertices of later bodies move onto vertices,
+/// edges and faces of earlier ones, which stay where they are, and faces of each get the vertices and edges of the
+/// other that lie on them. What is left between is cells thinner than the misfit. Without any nothing changes.
+ClosedGaps close_gaps(const BodySoup& soup, const Misfits& misfits, Closes what, const RunContext& context);
 
 }  // namespace octafront::cells

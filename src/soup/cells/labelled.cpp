@@ -95,6 +95,7 @@ std::vector<std::uint32_t> number_regions(const Labelled& labelled, Complex& com
     number[r] = static_cast<std::uint32_t>(complex.surface.region_names.size());
     const std::string& name = labelled.names[r];
     complex.surface.region_names.push_back(name.empty() ? free_name(labelled.names, nameless) : name);
+    if (r < labelled.labels.size()) complex.surface.region_labels.push_back(labelled.labels[r]);
   }
   complex.volumes.assign(complex.surface.region_names.size(), 0);
   const std::vector<double> volumes = labelled.cells.volumes();
@@ -117,7 +118,8 @@ Complex complex_of(const Labelled& labelled, const std::function<Face(std::size_
     for (std::uint32_t& r : sides)
       if (r != kNone) r = number[r];
     const bool embedded = !labelled.embedded.empty() && labelled.embedded[t];
-    const bool is_sheet = (front == back || embedded) && sides[0] == sides[1] && sides[0] != kNone;
+    const bool is_sheet =
+        ((front == back && labelled.has_sheets) || embedded) && sides[0] == sides[1] && sides[0] != kNone;
     vanished += sides[0] == sides[1] && !is_sheet && !embedded;
     if (sides[0] == sides[1] && !is_sheet) continue;
     sheets += is_sheet;

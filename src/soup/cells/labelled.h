@@ -19,6 +19,9 @@ struct Labelled {
   std::vector<std::string> names;  ///< of regions; empty where nobody gave one
   /// Per triangle: it stays where one region is on both sides, too, whatever its cells. Empty: none does.
   std::vector<char> embedded = {};
+  std::vector<std::int64_t> labels = {};  ///< SurfaceMesh::region_labels
+  /// Of closed bodies no triangle with one cell on both sides is a sheet: what is left of walls that came together.
+  bool has_sheets = true;
 };
 
 /// A place that means one cell. Throws InputError if it lies on a wall; `what` names it for messages.

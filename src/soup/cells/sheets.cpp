@@ -4,10 +4,12 @@
 
 #include "base/core/utf8.h"
 #include "base/core/wording.h"
+#include "soup/cells/bodies.h"
 #include "soup/cells/close_gaps.h"
 #include "soup/cells/labelled.h"
 
 #include <algorithm>
+#include <cmath>
 #include <queue>
 #include <utility>
 
@@ -80,12 +82,6 @@ SheetSoup soup_of_sheets(const SurfaceMesh& surface, const std::vector<Sheet>& s
     faces += static_cast<std::uint32_t>(sheets[s].surface.triangles.size());
   }
   return all;
-}
-
-double tolerance_of_sheets(const ComplexOptions& options, const std::vector<Vec3>& points) {
-  // Single precision keeps seven digits.
-  constexpr double kOfDiagonal = 1e-6;
-  return options.tolerance.value_or(kOfDiagonal * bounding_box(points).diagonal());
 }
 
 /// What an arranged triangle is part of.
@@ -182,14 +178,13 @@ void tell_fates(const std::vector<Fate>& fates, const std::vector<Sheet>& sheets
   }
 }
 
-}  // namespace
-
-Complex embed_sheets(const SurfaceMesh& surface, const std::vector<Sheet>& sheets, const ComplexOptions& options,
-                     const RunContext& context) {
+Complex embedded(const SurfaceMesh& surface, const std::vector<Sheet>& sheets, const cells::MisfitLimits& limits,
+                 const RunContext& context) {
   if (sheets.empty()) throw OptionError("there is no sheet to embed");
   const SheetSoup all = soup_of_sheets(surface, sheets, context);
-  const double tolerance = tolerance_of_sheets(options, surface.points);
-  const cells::ClosedGaps closed = cells::close_gaps({all.points, all.triangles, all.body}, tolerance, context);
+  const cells::BodySoup soup{all.points, all.triangles, all.body};
+  const cells::Misfits misfits(soup, limits, context);
+  const cells::ClosedGaps closed = cells::close_gaps(soup, misfits, cells::Closes::kWalls, context);
   const Arrangement arranged = arrange(closed.points, closed.triangles, context);
   const Cells cells(arranged.points, arranged.triangles, context);
   const Parts parts(arranged, closed, all);
@@ -221,16 +216,35 @@ Complex embed_sheets(const SurfaceMesh& surface, const std::vector<Sheet>& sheet
     std::swap(complex.surface.sides[t][0], complex.surface.sides[t][1]);
   }
   complex.surface.patch_names = all.patch_names;
+  complex.surface.patch_labels = surface.patch_labels;
   complex.surface.region_labels = surface.region_labels;
   NameCleaning().clean(complex.surface.patch_names);
   std::vector<std::string> notes;
   if (closed.moved > 0)
-    notes.push_back(fmt::format("{} of sheets moved onto walls within the tolerance of {:.3g}, by {:.3g} at most",
-                                counted(closed.moved, "vertex", "vertices"), tolerance, closed.largest_move));
+    notes.push_back(
+        fmt::format("{} of sheets that end just before walls moved onto these, by {:.3g} at most; "
+                    "`tolerance` 0 leaves them",
+                    counted(closed.moved, "vertex", "vertices"), closed.largest_move));
   tell_fates(fates_of(labelled, all, parts, sheets.size()), sheets, notes);
   notes.insert(notes.end(), complex.notes.begin(), complex.notes.end());
   complex.notes = std::move(notes);
   return complex;
+}
+
+}  // namespace
+
+Complex embed_sheets(const SurfaceMesh& surface, const std::vector<Sheet>& sheets, const ComplexOptions& options,
+                     const RunContext& context) {
+  // Single precision keeps seven digits.
+  constexpr double kOfDiagonal = 1e-6;
+  const double rounding = kOfDiagonal * bounding_box(surface.points).diagonal();
+  return embedded(surface, sheets, {options.tolerance.value_or(rounding), 0}, context);
+}
+
+Complex cells::embed_sheets(const SurfaceMesh& surface, const std::vector<Sheet>& sheets, const ComplexOptions& options,
+                            const ElementsToCome& elements, const RunContext& context) {
+  return embedded(surface, sheets, limits_for(options.tolerance, elements, std::abs(enclosed_volume(surface))),
+                  context);
 }
 
 }  // namespace octafront

@@ -2,14 +2,14 @@
 #include <octafront/repair.h>
 
 #include "base/core/wording.h"
+#include "base/mesh/complex.h"
 #include "base/mesh/surface_topology.h"
 #include "soup/cells/bodies.h"
+#include "soup/cells/filled_cells.h"
 #include "soup/cells/labelled.h"
 
 #include <algorithm>
 #include <cmath>
-#include <queue>
-#include <set>
 
 #include <fmt/core.h>
 
@@ -59,75 +59,26 @@ bool is_plain(const SurfaceMesh& surface, const RunContext& context) {
           defects.non_manifold_vertices.count == 0 && defects.open_edges.count == 0);
 }
 
-/// Steps from outside to each cell, through walls.
-std::vector<std::uint32_t> depths(const Arrangement& arranged, const Cells& cells) {
-  std::vector<std::set<std::uint32_t>> beside(cells.count());
-  for (std::size_t t = 0; t < arranged.triangles.size(); ++t) {
-    const auto [front, back] = cells.sides_of(t);
-    beside[front].insert(back);
-    beside[back].insert(front);
-  }
-  std::vector<std::uint32_t> depth(cells.count(), kNone);
-  std::queue<std::uint32_t> queue({0});
-  depth[0] = 0;
-  while (!queue.empty()) {
-    const std::uint32_t c = queue.front();
-    queue.pop();
-    for (const std::uint32_t n : beside[c])
-      if (depth[n] == kNone) {
-        depth[n] = depth[c] + 1;
-        queue.push(n);
-      }
-  }
-  return depth;
-}
-
-/// A piece of the surface as a shell: closed, with one cell inside and one outside of it.
-struct Shell {
-  std::uint32_t outside = kNone, inside = kNone;
-  bool simple = true;
-  double facing_in = 0;  ///< area that faces the inside, less area that faces outside
-};
-
-std::vector<Shell> shells_of(const Arrangement& arranged, const Cells& cells, const std::vector<std::uint32_t>& depth) {
-  std::vector<Shell> shells(cells.pieces());
-  for (std::size_t t = 0; t < arranged.triangles.size(); ++t) {
-    const auto [front, back] = cells.sides_of(t);
-    Shell& s = shells[cells.piece()[t]];
-    const bool faces_in = depth[front] > depth[back];
-    const std::uint32_t in = faces_in ? front : back, out = faces_in ? back : front;
-    if (s.outside == kNone) s = {out, in, true, 0};
-    s.simple = s.simple && depth[front] != depth[back] && s.outside == out && s.inside == in;
-    const auto [a, b, c] = arranged.triangles[t];
-    const double area =
-        length(cross(arranged.points[b] - arranged.points[a], arranged.points[c] - arranged.points[a])) / 2;
-    s.facing_in += faces_in ? area : -area;
-  }
-  return shells;
-}
-
-/// Empties the cavities; says which shells inside others were taken for what.
-void choose_nested(Labelled& labelled, const ComplexOptions& options, std::vector<std::string>& notes) {
-  using Nested = ComplexOptions::Nested;
-  const std::vector<std::uint32_t> depth = depths(labelled.arranged, labelled.cells);
-  std::uint64_t cavities = 0, regions = 0;
-  for (const Shell& s : shells_of(labelled.arranged, labelled.cells, depth)) {
-    if (!s.simple || s.outside == 0) continue;
-    const bool is_cavity = options.nested == Nested::kCavity
-                               ? depth[s.inside] % 2 == 0
-                               : options.nested == Nested::kByDirection && s.facing_in > 0;
-    ++(is_cavity ? cavities : regions);
-    if (is_cavity) labelled.region[s.inside] = kNone;
-  }
-  const bool by_direction = options.nested == Nested::kByDirection;
-  if (cavities > 0)
-    notes.push_back(fmt::format("{} inside {} taken as {}{}", counted(cavities, "shell"),
-                                cavities == 1 ? "another" : "others", cavities == 1 ? "a cavity" : "cavities",
-                                by_direction ? ": facing inward (`nested` region fills them)" : ""));
-  if (regions > 0)
-    notes.push_back(fmt::format("{} inside {} taken as {} of {} own{}", counted(regions, "shell"),
-                                regions == 1 ? "another" : "others", regions == 1 ? "a region" : "regions",
-                                regions == 1 ? "its" : "their",
+/// Empties the cells that the walls do not mean to be filled; says which shells inside others were taken for what.
+void empty_cavities(Labelled& labelled, const cells::FilledCells& filled, const ComplexOptions& options,
+                    std::vector<std::string>& notes) {
+  for (std::size_t c = 0; c < filled.times.size(); ++c)
+    if (filled.times[c] == 0) labelled.region[c] = kNone;
+  const bool by_direction = options.nested == ComplexOptions::Nested::kByDirection;
+  const auto stay_empty = [&](std::uint64_t cavities, const char* why) {
+    if (cavities > 0)
+      notes.push_back(fmt::format("{} {} empty{}", counted(cavities, "cavity", "cavities"),
+                                  cavities == 1 ? "stays" : "stay", by_direction ? why : ""));
+  };
+  stay_empty(filled.cavities_by_winding, ": walls face into what they enclose there (`nested` region fills that)");
+  stay_empty(filled.cavities_by_nesting,
+             ": faces do not agree on their outer side, so what lies behind an even number of walls is outside "
+             "(`nested` region fills that)");
+  if (filled.filled_shells > 0)
+    notes.push_back(fmt::format("{} inside {} taken as {} of {} own{}", counted(filled.filled_shells, "shell"),
+                                filled.filled_shells == 1 ? "another" : "others",
+                                filled.filled_shells == 1 ? "a region" : "regions",
+                                filled.filled_shells == 1 ? "its" : "their",
                                 by_direction ? ": facing outward (`nested` cavity empties them)" : ""));
 }
 
@@ -149,25 +100,37 @@ void refuse_loose_walls(const Labelled& labelled, const SurfaceMesh& surface) {
                   counted(faces.size(), "face"), places));
 }
 
-/// Cells that nobody named are regions by number, or one.
+/// Whether a wall lies between two cells that are filled.
+bool has_inner_walls(const Arrangement& arranged, const Cells& cells, const cells::FilledCells& filled) {
+  for (std::size_t t = 0; t < arranged.triangles.size(); ++t)
+    if (const auto [front, back] = cells.sides_of(t);
+        front != back && filled.times[front] != 0 && filled.times[back] != 0)
+      return true;
+  return false;
+}
+
+/// Cells that nobody named are regions by number, or one: where they are to be merged, and where bodies of one file
+/// meet in edges and vertices at most.
 Labelled label_cells(const Arrangement& arranged, const Cells& cells, const ComplexOptions& options,
-                     std::vector<std::string>& notes) {
+                     std::vector<std::string>& notes, const RunContext& context) {
+  using Ways = ComplexOptions::Cells;
   Labelled labelled{arranged, cells, std::vector<std::uint32_t>(cells.count(), kNone), {}};
-  const bool merge = options.cells == ComplexOptions::Cells::kMerge;
+  const cells::FilledCells filled = cells::filled_cells(arranged, cells, options.nested, context);
+  const bool merge = options.cells == Ways::kMerge || (options.cells == Ways::kAuto && options.regions.empty() &&
+                                                       !has_inner_walls(arranged, cells, filled));
   for (std::uint32_t c = 1; c < cells.count(); ++c) {
     labelled.region[c] = merge ? 0 : c - 1;
     if (labelled.names.empty() || !merge) labelled.names.emplace_back(merge ? "body" : "");
   }
-  choose_nested(labelled, options, notes);
+  empty_cavities(labelled, filled, options, notes);
   cells::apply_seeds(labelled, options);
   return labelled;
 }
 
-/// What a complex says of one region and outside alone need not be said.
+/// What a complex says of one region and outside alone need not be said, unless it touches itself.
 void forget_sides_of_one(SurfaceMesh& surface) {
-  if (surface.region_names.size() != 1) return;
-  for (const Sides& s : surface.sides)
-    if (s != Sides{kNone, 0}) return;
+  if (surface.region_names.size() != 1 || is_complex(surface)) return;
+  if (!is_closed_manifold(surface.triangles, surface.points.size())) return;
   surface.sides.clear();
   surface.region_names.clear();
 }
@@ -188,6 +151,7 @@ Complex relabelled(const SurfaceMesh& surface, const ComplexOptions& options, co
         "the places");
   const Cells cells(arranged.points, arranged.triangles, context);
   Labelled labelled{arranged, cells, std::vector<std::uint32_t>(cells.count(), kNone), surface.region_names};
+  labelled.labels = surface.region_labels;
   for (std::size_t t = 0; t < arranged.triangles.size(); ++t) {
     const Sides sides = surface.sides_of(arranged.origins_of(t)[0].triangle);
     for (const std::size_t side : {0, 1}) labelled.region[cells.sides_of(t)[side]] = sides[side];
@@ -201,6 +165,7 @@ Complex relabelled(const SurfaceMesh& surface, const ComplexOptions& options, co
     return cells::Face{surface.patch_of(face), surface.source_of(face)};
   });
   made.surface.patch_names = surface.patch_names;
+  made.surface.patch_labels = surface.patch_labels;
   forget_zeros(made.surface.patch);
   return made;
 }
@@ -209,11 +174,23 @@ Complex relabelled(const SurfaceMesh& surface, const ComplexOptions& options, co
 
 std::optional<Complex> complex_of_walls(const SurfaceMesh& surface, const ComplexOptions& options,
                                         const RunContext& context) {
+  return cells::complex_of_walls(surface, options, {}, context);
+}
+
+namespace cells {
+
+std::optional<Complex> complex_of_walls(const SurfaceMesh& surface, const ComplexOptions& options,
+                                        const ElementsToCome& elements, const RunContext& context) {
   check_input(surface);
   if (!surface.sides.empty()) return relabelled(surface, options, context);
   const bool asked = is_asked_for(options);
-  if (is_for_solids(options))
-    if (std::optional<Complex> solids = cells::complex_of_solids(surface, options, context)) return solids;
+  if (is_for_solids(options)) {
+    if (std::optional<Complex> solids = complex_of_solids(surface, options, elements, context)) return solids;
+    if (std::optional<Complex> shells = complex_of_shells(surface, options, elements, context)) {
+      forget_zeros(shells->surface.patch);
+      return shells;
+    }
+  }
   if (!asked && is_plain(surface, context)) return std::nullopt;
   const Arrangement arranged = arrange(surface.points, surface.triangles, context);
   const Cells cells(arranged.points, arranged.triangles, context);
@@ -222,7 +199,7 @@ std::optional<Complex> complex_of_walls(const SurfaceMesh& surface, const Comple
     notes.push_back(fmt::format("faces divided where they cross, at {}", counted(arranged.new_points, "new point")));
   const bool encloses = cells.count() > 1;
   if (!asked && !encloses) return std::nullopt;
-  const Labelled labelled = label_cells(arranged, cells, options, notes);
+  const Labelled labelled = label_cells(arranged, cells, options, notes, context);
   try {
     refuse_loose_walls(labelled, surface);
   } catch (const InputError&) {
@@ -235,6 +212,7 @@ std::optional<Complex> complex_of_walls(const SurfaceMesh& surface, const Comple
   });
   if (complex.surface.triangles.empty()) throw InputError("every enclosed cell is a void: there is nothing to mesh");
   complex.surface.patch_names = surface.patch_names;
+  complex.surface.patch_labels = surface.patch_labels;
   forget_zeros(complex.surface.patch);
   // A name that was given stays.
   if (options.regions.empty()) forget_sides_of_one(complex.surface);
@@ -243,6 +221,18 @@ std::optional<Complex> complex_of_walls(const SurfaceMesh& surface, const Comple
   notes.insert(notes.end(), complex.notes.begin(), complex.notes.end());
   complex.notes = std::move(notes);
   return complex;
+}
+
+}  // namespace cells
+
+BoundedSpaces bounded_spaces(const SurfaceMesh& clean, const RunContext& context) {
+  const Cells cells(clean.points, clean.triangles, context);
+  std::vector<char> is_filled(cells.count(), 0);
+  for (std::size_t t = 0; t < clean.triangles.size(); ++t)
+    for (const std::size_t side : {0, 1})
+      if (clean.sides_of(t)[side] != kNone) is_filled[cells.sides_of(t)[side]] = 1;
+  const auto filled = static_cast<std::uint32_t>(std::count(is_filled.begin(), is_filled.end(), 1));
+  return {filled, cells.count() - 1 - filled};
 }
 
 SurfaceMesh tube_along(const std::vector<Vec3>& way) {

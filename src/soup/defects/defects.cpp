@@ -61,28 +61,26 @@ std::string SurfaceDefects::describe() const {
                       open_loops == 0
                           ? counted(open_edges.count, "open edge")
                           : fmt::format("{} ({})", counted(open_loops, "hole"), counted(open_edges.count, "open edge")),
-                      "edge at",
-                      "Close the surface, e.g. in MeshLab with \"Close Holes\"; if faces only fail to touch, with "
-                      "\"Merge Close Vertices\".");
+                      "edge at", "`octafront repair` closes holes, and joins edges that only fail to touch.");
   octafront::describe(text, non_manifold_edges, counted(non_manifold_edges.count, "edge") + " of more than two faces",
                       "edge at",
-                      "Remove inner walls and doubled faces, or separate the bodies that touch there, e.g. in MeshLab "
-                      "with \"Repair Non Manifold Edges\".");
+                      "`octafront repair` removes inner walls and doubled faces, and draws apart bodies that touch "
+                      "there; to mesh both sides of a wall see `cells`.");
   octafront::describe(text, misoriented_edges,
                       counted(misoriented_edges.count, "edge") + " whose two faces cannot agree on an outer side",
                       "edge at", "The surface is one-sided there, like a Möbius strip: divide it or remove the faces.");
   octafront::describe(
       text, non_manifold_vertices,
       counted(non_manifold_vertices.count, "vertex", "vertices") + " where parts touch in a single point", "vertex at",
-      "Separate the parts, e.g. in MeshLab with \"Repair Non Manifold Vertices by Splitting\" and a "
-      "small displacement, or join them by more than a point.");
+      "`octafront repair` draws them apart.");
   octafront::describe(text, self_intersections,
                       (self_intersections.count >= defects::kMostPairs ? "at least " : "") +
                           counted(self_intersections.count, "pair") + " of faces that cut or touch each other",
                       "near",
-                      "Unite overlapping parts, e.g. with a boolean union, or remove the faces and close the hole.");
+                      "`octafront repair` unites parts that overlap, and removes what lies inside; parts with names "
+                      "can be regions (`overlap`).");
   octafront::describe(text, degenerate_faces, counted(degenerate_faces.count, "face") + " without area", "at",
-                      "Remove them and close the gaps.");
+                      "`octafront repair` removes them and closes the gaps.");
   octafront::describe(
       text, region_conflicts,
       counted(region_conflicts.count, "edge") + " around which the regions of the faces do not agree", "edge at",

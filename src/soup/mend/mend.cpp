@@ -205,6 +205,7 @@ class Mending {
       wall = soup_.source_of(face);
     }
     skin.surface.patch_names = soup_.patch_names;
+    skin.surface.patch_labels = soup_.patch_labels;
     if (has_far) {
       skin.surface.patch_names.resize(patch_of_caps);
       skin.surface.patch_names.emplace_back(kClosedByRepair);
@@ -294,6 +295,7 @@ class Mending {
         if (!is_cap(o.triangle)) used[o.triangle] = 1;
     }
     surface.patch_names = soup_.patch_names;
+    surface.patch_labels = soup_.patch_labels;
     if (has_patches) {
       surface.patch_names.resize(patch_of_caps);
       surface.patch_names.emplace_back(kClosedByRepair);
@@ -436,6 +438,7 @@ SurfaceMesh wrapped(const SurfaceMesh& soup, const MendOptions& options, const R
     face = soup.source_of(face);
   }
   skin.surface.patch_names = soup.patch_names;
+  skin.surface.patch_labels = soup.patch_labels;
   report.largest_move = distance;
   report.changes.push_back(
       {Kind::kRebuilt, skin.surface.points.front(), area(skin.surface), skin.surface.triangles.size()});

@@ -64,6 +64,7 @@ void drop_unused_patches(SurfaceMesh& surface) {
   }
   for (std::uint32_t& p : surface.patch) p = number[p];
   surface.patch_names = std::move(names);
+  surface.patch_labels.clear();
 }
 
 }  // namespace

@@ -183,8 +183,19 @@ TEST(Defects, MessageSaysHowManyWhereAndWhatToDo) {
   EXPECT_EQ(
       defects_of(s).describe(),
       "1 hole (3 open edges): edge at (0, 1, 2) (face 0); edge at (1, 2, 2) (face 6); edge at (1, 1, 2) (face 10). "
-      "Close the surface, e.g. in MeshLab with \"Close Holes\"; if faces only fail to touch, with \"Merge Close "
-      "Vertices\".");
+      "`octafront repair` closes holes, and joins edges that only fail to touch.");
+}
+
+TEST(Defects, NoMessageSendsAnybodyToAnotherProgram) {
+  SurfaceDefects d;
+  for (SurfaceDefects::Kind* kind :
+       {&d.open_edges, &d.non_manifold_edges, &d.misoriented_edges, &d.non_manifold_vertices, &d.self_intersections,
+        &d.degenerate_faces, &d.region_conflicts, &d.misplaced_parts})
+    kind->count = 1;
+  const std::string text = d.describe();
+  for (const char* other : {"MeshLab", "Blender", "e.g. "}) EXPECT_EQ(text.find(other), std::string::npos) << text;
+  for (const char* ours : {"`octafront repair`", "`cells`", "`overlap`"})
+    EXPECT_NE(text.find(ours), std::string::npos) << text;
 }
 
 TEST(Defects, MessageHasALineForEachKindAndNoneBehind) {

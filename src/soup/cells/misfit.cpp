@@ -1,0 +1,267 @@
+#include "soup/cells/misfit.h"
+
+#include "base/core/elementary.h"
+#include "base/core/parallel.h"
+#include "base/geometry/leeway.h"
+#include "base/geometry/measures.h"
+#include "base/geometry/triangle_tree.h"
+#include "base/mesh/edge_table.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <memory>
+#include <numeric>
+#include <utility>
+
+namespace octafront::cells {
+namespace {
+
+/// Walls nearer than this part of the size make elements flatter than anybody wants.
+constexpr double kOfSize = 0.1;
+/// How many times farther than that it must be through the bodies.
+constexpr double kThicker = 5;
+/// Facets of curved walls stray from each other by what theirs do together; somewhat more where facets are irregular.
+constexpr double kOfSagitta = 1.25;
+/// The cosine of what facets of curved walls turn by, at most: 65 degrees; six facets around have 60.
+constexpr double kCurved = 0.4226;
+/// Elements of a mesh whose sizes nobody chose, about.
+constexpr double kUsualElements = 30'000;
+
+}  // namespace
+
+bool is_curved(Vec3 n, Vec3 m) {
+  return dot(n, m) >= kCurved;
+}
+
+namespace {
+
+/// One body, as its neighbours meet it.
+struct BodyWall {
+  std::vector<Triangle> triangles;
+  std::vector<Vec3> normals;
+  std::vector<VertexIndex> vertices;
+  std::vector<std::vector<std::uint32_t>> around;  ///< per vertex, by its place in `vertices`
+  std::vector<double> sagitta;                     ///< per triangle: how far its facet is from what it stands for
+  std::vector<double> sagitta_at;                  ///< per vertex
+  std::vector<char> at_end;                        ///< per vertex: where a sheet ends
+  double largest_sagitta = 0;
+  Box3 box;
+  std::unique_ptr<TriangleTree> tree;
+  std::unique_ptr<Leeway> leeway;
+
+  BodyWall(const std::vector<Vec3>& points, std::vector<Triangle> faces) : triangles(std::move(faces)) {
+    for (const Triangle& t : triangles) {
+      normals.push_back(unit_normal(points[t[0]], points[t[1]], points[t[2]]));
+      vertices.insert(vertices.end(), t.begin(), t.end());
+    }
+    std::sort(vertices.begin(), vertices.end());
+    vertices.erase(std::unique(vertices.begin(), vertices.end()), vertices.end());
+    around.resize(vertices.size());
+    for (std::uint32_t t = 0; t < triangles.size(); ++t)
+      for (const VertexIndex v : triangles[t]) around[place_of(v)].push_back(t);
+    for (const VertexIndex v : vertices) box.add(points[v]);
+    measure_sagittas(points);
+    tree = std::make_unique<TriangleTree>(points, triangles);
+    leeway = std::make_unique<Leeway>(SurfaceMesh{}, *tree);
+  }
+
+  std::size_t place_of(VertexIndex v) const {
+    return static_cast<std::size_t>(std::lower_bound(vertices.begin(), vertices.end(), v) - vertices.begin());
+  }
+
+ private:
+  /// Of a chord of length w that turns by an angle at its ends: w / 2 tan(angle / 4).
+  void measure_sagittas(const std::vector<Vec3>& points) {
+    sagitta.assign(triangles.size(), 0);
+    at_end.assign(vertices.size(), 0);
+    std::vector<Triangle> local = triangles;
+    for (Triangle& t : local)
+      for (VertexIndex& v : t) v = static_cast<VertexIndex>(place_of(v));
+    const EdgeTable edges = make_edge_table(vertices.size(), local);
+    for (std::size_t e = 0; e < edges.size(); ++e) {
+      const auto uses = edges.uses(e);
+      if (uses.size() == 1)
+        for (const VertexIndex v : edges.edges[e]) at_end[v] = 1;
+      if (uses.size() != 2) continue;
+      const std::uint32_t s = uses[0] / 3, t = uses[1] / 3;
+      if (!is_curved(normals[s], normals[t])) continue;
+      const Vec3 p = points[vertices[edges.edges[e][0]]], q = points[vertices[edges.edges[e][1]]];
+      double width = 0;
+      for (const HalfEdge h : uses) {
+        const auto [a, b, c] = triangles[h / 3];
+        width = std::max(width, length(double_area_normal(points[a], points[b], points[c])) / distance(p, q));
+      }
+      const double turn = elementary::atan2(length(cross(normals[s], normals[t])), dot(normals[s], normals[t]));
+      for (const std::uint32_t k : {s, t}) sagitta[k] = std::max(sagitta[k], width / 2 * elementary::tan(turn / 4));
+    }
+    sagitta_at.assign(vertices.size(), 0);
+    for (std::size_t v = 0; v < vertices.size(); ++v)
+      for (const std::uint32_t t : around[v]) sagitta_at[v] = std::max(sagitta_at[v], sagitta[t]);
+    for (const double s : sagitta) largest_sagitta = std::max(largest_sagitta, s);
+  }
+};
+
+}  // namespace
+
+double MisfitLimits::most() const {
+  return tolerance.value_or(kOfSize * size);
+}
+
+MisfitLimits limits_for(std::optional<double> tolerance, const ElementsToCome& elements, double volume) {
+  // A regular tetrahedron of edge 1 has a volume of .118.
+  const double count = elements.elements ? static_cast<double>(*elements.elements) : kUsualElements;
+  return {tolerance, elements.size.value_or(elementary::cbrt(volume / (0.118 * std::max(count, 1.0))))};
+}
+
+MisfitLimits limits_for(const ComplexOptions& options, const ElementsToCome& elements,
+                        const std::vector<Body>& bodies) {
+  double volume = 0;
+  for (const Body& b : bodies) volume += std::abs(enclosed_volume(b.surface));
+  return limits_for(options.tolerance, elements, volume);
+}
+
+bool face_each_other(Vec3 n, Vec3 m, Vec3 way) {
+  // Cosines: walls of facets of eight and of six sides may turn against each other by 37 degrees, corners of three
+  // walls may lie apart along their diagonal.
+  constexpr double kParallel = 0.7, kAcross = 0.5;
+  return std::abs(dot(n, m)) > kParallel && std::abs(dot(m, way)) >= kAcross * length(way);
+}
+
+namespace {
+
+class Measuring {
+ public:
+  Measuring(const BodySoup& soup, const MisfitLimits& limits, const RunContext& context)
+      : points_(soup.points), limits_(limits), context_(context) {
+    std::vector<std::vector<Triangle>> faces;
+    for (std::size_t t = 0; t < soup.triangles.size(); ++t) {
+      if (soup.body[t] >= faces.size()) faces.resize(soup.body[t] + 1);
+      faces[soup.body[t]].push_back(soup.triangles[t]);
+    }
+    for (std::vector<Triangle>& f : faces) walls_.emplace_back(points_, std::move(f));
+  }
+
+  /// The misfits of pairs of bodies that come near each other.
+  std::map<std::pair<std::uint32_t, std::uint32_t>, double> misfits() const {
+    const std::vector<std::array<std::uint32_t, 2>> pairs = near_pairs();
+    std::vector<double> misfit_of(pairs.size(), 0);
+    parallel_for(
+        pairs.size(),
+        [&](std::size_t i) {
+          const auto [a, b] = pairs[i];
+          context_.check();
+          misfit_of[i] = std::max(misfit(walls_[a], walls_[b]), misfit(walls_[b], walls_[a]));
+        },
+        Split::kAdaptive);
+    std::map<std::pair<std::uint32_t, std::uint32_t>, double> misfits;
+    for (std::size_t i = 0; i < pairs.size(); ++i)
+      if (misfit_of[i] > 0) misfits[{pairs[i][0], pairs[i][1]}] = misfit_of[i];
+    return misfits;
+  }
+
+ private:
+  /// Bodies whose boxes come near each other.
+  std::vector<std::array<std::uint32_t, 2>> near_pairs() const {
+    double sagitta = 0;
+    for (const BodyWall& w : walls_) sagitta = std::max(sagitta, w.largest_sagitta);
+    const double most = limits_.tolerance.value_or(std::max(kOfSize * limits_.size, 2 * kOfSagitta * sagitta));
+    std::vector<std::uint32_t> order(walls_.size());
+    std::iota(order.begin(), order.end(), 0);
+    std::sort(order.begin(), order.end(), [&](std::uint32_t a, std::uint32_t b) {
+      return std::pair(walls_[a].box.lo.x, a) < std::pair(walls_[b].box.lo.x, b);
+    });
+    std::vector<std::array<std::uint32_t, 2>> pairs;
+    for (std::size_t i = 0; i < order.size(); ++i)
+      for (std::size_t j = i + 1; j < order.size(); ++j) {
+        const BodyWall &a = walls_[order[i]], &b = walls_[order[j]];
+        if (b.box.lo.x > a.box.hi.x + most) break;
+        if (grown(a.box, most_between(a, b)).overlaps(b.box))
+          pairs.push_back({std::min(order[i], order[j]), std::max(order[i], order[j])});
+      }
+    return pairs;
+  }
+
+  static Box3 grown(Box3 box, double by) {
+    box.lo -= Vec3{by, by, by};
+    box.hi += Vec3{by, by, by};
+    return box;
+  }
+
+  double most_between(const BodyWall& a, const BodyWall& b) const {
+    if (limits_.tolerance) return *limits_.tolerance;
+    return std::max(kOfSize * limits_.size, kOfSagitta * (a.largest_sagitta + b.largest_sagitta));
+  }
+
+  /// The farthest that a vertex of `a` lies from a wall of `b` that it belongs to.
+  double misfit(const BodyWall& a, const BodyWall& b) const {
+    const double most = most_between(a, b);
+    const Box3 near_b = grown(b.box, most);
+    double largest = 0;
+    for (std::size_t v = 0; v < a.vertices.size(); ++v) {
+      const Vec3 p = points_[a.vertices[v]];
+      if (!near_b.overlaps({p, p})) continue;
+      largest = std::max(largest, misfit_at(a, v, b, most));
+    }
+    return largest;
+  }
+
+  double misfit_at(const BodyWall& a, std::size_t v, const BodyWall& b, double most) const {
+    // The end of a sheet goes on to walls any way.
+    double largest = a.at_end[v] ? misfit_at(a, v, {}, b, most) : 0;
+    for (const std::uint32_t s : a.around[v]) largest = std::max(largest, misfit_at(a, v, a.normals[s], b, most));
+    return largest;
+  }
+
+  /// Of one of the walls around the vertex, by its normal, or of none.
+  double misfit_at(const BodyWall& a, std::size_t v, Vec3 normal, const BodyWall& b, double most) const {
+    const Vec3 p = points_[a.vertices[v]];
+    double nearest = TriangleTree::kFar, allowed = 0;
+    Vec3 at;
+    b.tree->for_each_box_near(grown({p, p}, most), [&](std::uint32_t t, const TriangleCorners& c) {
+      const Vec3 q = closest_point_on_triangle(p, c[0], c[1], c[2]);
+      const double d = distance(p, q);
+      if (d > most || d >= nearest) return true;
+      if (normal != Vec3{} && !face_each_other(normal, b.normals[t], p - q)) return true;
+      nearest = d;
+      at = q;
+      allowed = kOfSagitta * (a.sagitta_at[v] + b.sagitta[t]);
+      return true;
+    });
+    if (!(nearest <= most)) return 0;
+    if (limits_.tolerance || nearest <= allowed) return is_thinner(a, p, b, at, nearest) ? 0 : nearest;
+    const bool small = nearest <= kOfSize * limits_.size;
+    return small && !is_thinner(a, p, b, at, kThicker * nearest) ? nearest : 0;
+  }
+
+  /// Whether one of the bodies is there, to be moved by that.
+  static bool is_thinner(const BodyWall& a, Vec3 p, const BodyWall& b, Vec3 q, double by) {
+    return a.leeway->at(p, by) < by || b.leeway->at(q, by) < by;
+  }
+
+  const std::vector<Vec3>& points_;
+  const MisfitLimits& limits_;
+  const RunContext& context_;
+  std::vector<BodyWall> walls_;
+};
+
+}  // namespace
+
+Misfits::Misfits(const BodySoup& soup, const MisfitLimits& limits, const RunContext& context) {
+  for (const std::uint32_t b : soup.body) bodies_ = std::max(bodies_, b + 1);
+  if (limits.tolerance == 0.0) return;
+  // Single precision keeps seven digits.
+  constexpr double kOfDiagonal = 1e-6;
+  Box3 box;
+  for (const Vec3 p : soup.points) box.add(p);
+  floor_ = std::min(kOfDiagonal * box.diagonal(), limits.tolerance.value_or(TriangleTree::kFar));
+  misfit_ = Measuring(soup, limits, context).misfits();
+}
+
+double Misfits::largest() const {
+  double largest = 0;
+  for (const auto& [pair, d] : misfit_) largest = std::max(largest, d);
+  return largest;
+}
+
+}  // namespace octafront::cells

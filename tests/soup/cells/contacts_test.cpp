@@ -1,0 +1,209 @@
+// Bodies that touch, and were faceted apart.
+
+#include <octafront/complex.h>
+#include <octafront/inside.h>
+
+#include "base/geometry/self_intersection.h"
+#include "soup/cells/bodies.h"
+#include "support/complexes.h"
+#include "support/faceted.h"
+#include "support/named_surfaces.h"
+
+#include <algorithm>
+#include <cmath>
+#include <string>
+#include <vector>
+
+#include <gtest/gtest.h>
+
+namespace octafront {
+namespace {
+
+using testing::faceted_pin, testing::faceted_ring;
+
+Complex joined_at(const std::vector<Body>& bodies, double size, std::optional<double> tolerance = {}) {
+  ComplexOptions options;
+  options.tolerance = tolerance;
+  return cells::join_bodies(bodies, options, {size, {}}, {});
+}
+
+/// Two regions, nothing between them, and no face that a mesh could not have.
+void expect_in_contact(const Complex& complex, std::vector<double> volumes, double within) {
+  ASSERT_EQ(complex.volumes.size(), volumes.size());
+  for (std::size_t r = 0; r < volumes.size(); ++r) {
+    EXPECT_NEAR(complex.volumes[r], volumes[r], within);
+    EXPECT_NEAR(testing::region_volumes(complex.surface)[r], volumes[r], within);
+  }
+  EXPECT_TRUE(self_intersections(complex.surface.points, complex.surface.triangles).empty());
+}
+
+bool is_said(const Complex& complex, const std::string& words) {
+  return std::any_of(complex.notes.begin(), complex.notes.end(),
+                     [&](const std::string& note) { return note.find(words) != std::string::npos; });
+}
+
+double polygon(int sides, double radius) {
+  return sides / 2.0 * radius * radius * std::sin(2 * std::acos(-1) / sides);
+}
+
+// Fails where facets of both bodies cross again after rounding; the joining of such walls is not done.
+TEST(Contacts, DISABLED_TheWallOfTheEarlierBodyIsLeftWhateverTheSides) {
+  struct Sides {
+    int ring, pin;
+  };
+  for (const auto& [n, m] : {Sides{6, 8}, Sides{12, 16}, Sides{24, 25}, Sides{48, 49}, Sides{20, 20}, Sides{16, 48}}) {
+    SCOPED_TRACE(::testing::Message() << n << " against " << m);
+    const SurfaceMesh ring = faceted_ring(n, 5, 10, 4), pin = faceted_pin(m, 5, 0, 4, n == m ? .1 : 0);
+    const double round = 4 * polygon(n, 10);
+    const Complex pin_later = joined_at({{"ring", ring}, {"pin", pin}}, 1);
+    expect_in_contact(pin_later, {round - 4 * polygon(n, 5), 4 * polygon(n, 5)}, 1e-9);
+    EXPECT_TRUE(is_said(pin_later, "walls of bodies that nearly touch are one"));
+    const Complex ring_later = joined_at({{"pin", pin}, {"ring", ring}}, 1);
+    expect_in_contact(ring_later, {4 * polygon(m, 5), round - 4 * polygon(m, 5)}, 1e-9);
+  }
+}
+
+TEST(Contacts, ABoltThatStandsOut) {
+  const SurfaceMesh plate = faceted_ring(48, 5, 12, 6), bolt = faceted_pin(36, 5, -4, 10);
+  const Complex complex = joined_at({{"plate", plate}, {"bolt", bolt}}, 1.5);
+  const double hole = 6 * polygon(48, 5);
+  // It is as thick as the hole in it, and between both beside it.
+  ASSERT_EQ(complex.volumes.size(), 2U);
+  EXPECT_NEAR(complex.volumes[0], 6 * polygon(48, 12) - hole, 1e-9);
+  EXPECT_GT(complex.volumes[1], hole + 8 * polygon(36, 5) - 1e-9);
+  EXPECT_LT(complex.volumes[1], hole + 8 * polygon(48, 5));
+  EXPECT_TRUE(self_intersections(complex.surface.points, complex.surface.triangles).empty());
+}
+
+// Fails where facets of both bodies cross again after rounding; the joining of such walls is not done.
+TEST(Contacts, DISABLED_PartOfAWall) {
+  const SurfaceMesh inner = faceted_pin(24, 5, 0, 4), plaque = testing::faceted_segment(13, 5, 7, 1, 3, .3, 1.3);
+  const Complex complex = joined_at({{"inner", inner}, {"plaque", plaque}}, 1);
+  EXPECT_NEAR(complex.volumes[0], 4 * polygon(24, 5), 1e-9);
+  EXPECT_NEAR(complex.volumes[1], testing::region_volumes(complex.surface)[1], 1e-9);
+  EXPECT_NEAR(complex.volumes[1], enclosed_volume(plaque), .1);
+  EXPECT_TRUE(self_intersections(complex.surface.points, complex.surface.triangles).empty());
+}
+
+TEST(Contacts, ToleranceIsMonotone) {
+  // A ball in its cavity; whatever more is allowed, what is measured counts.
+  const SurfaceMesh block = testing::joined(testing::transformed(testing::cube(1), 12, {-6, -6, -6}),
+                                            testing::reversed(testing::icosphere(2, 3)));
+  const SurfaceMesh ball = testing::faceted_ball(16, 8, 3);
+  const double cavity = enclosed_volume(testing::icosphere(2, 3)), whole = 12 * 12 * 12;
+  for (const std::optional<double> tolerance : {std::optional<double>(), {.1}, {.2}, {.3}, {.5}, {3.}}) {
+    SCOPED_TRACE(tolerance.value_or(-1));
+    expect_in_contact(joined_at({{"block", block}, {"ball", ball}}, 1.5, tolerance), {whole - cavity, cavity}, 1e-9);
+    const double own = enclosed_volume(ball);
+    expect_in_contact(joined_at({{"ball", ball}, {"block", block}}, 1.5, tolerance), {own, whole - own}, 1e-9);
+  }
+}
+
+TEST(Contacts, BoxesThatOverlapOrGapAreFlush) {
+  const SurfaceMesh a = testing::cube(1);
+  for (const double off : {1e-7, 1e-5, 1e-3, 1e-2, -1e-6, -1e-4, -1e-2}) {
+    SCOPED_TRACE(off);
+    for (const double scale : {1e-3, 1.0, 1e6}) {
+      const SurfaceMesh b = testing::transformed(testing::cube(1), scale, {scale * (1 - off), 0, 0});
+      const Complex complex = joined_at({{"a", testing::transformed(a, scale, {0, 0, 0})}, {"b", b}}, .2 * scale);
+      const double v = scale * scale * scale;
+      expect_in_contact(complex, {v, v * (1 - off)}, 1e-6 * v);
+      // Eight corners each, four of them the same, and one in the middle of each face of a cube of this support.
+      EXPECT_LE(complex.surface.points.size(), 2 * a.points.size() - 4);
+    }
+  }
+}
+
+TEST(Contacts, OneFileWithoutNames) {
+  // The wall between is warped, and cut along the other diagonal.
+  for (const double warp : {1e-12, 1e-9, 1e-6, 1e-4}) {
+    SCOPED_TRACE(warp);
+    SurfaceMesh two;
+    for (const double x : {0., 1.})
+      for (const double z : {0., 1.})
+        for (const double y : {0., 1.})
+          for (const double dx : {0., 1.}) two.points.push_back({x + dx, y, z});
+    two.points[8].x += warp;
+    for (const VertexIndex f : {0u, 8u}) {
+      const auto quad = [&](VertexIndex a, VertexIndex b, VertexIndex c, VertexIndex d) {
+        two.triangles.push_back({f + a, f + b, f + c});
+        two.triangles.push_back({f + a, f + c, f + d});
+      };
+      quad(0, 2, 3, 1);
+      quad(4, 5, 7, 6);
+      quad(0, 1, 5, 4);
+      quad(2, 6, 7, 3);
+      if (f == 0) quad(1, 3, 7, 5);
+      if (f == 0) quad(0, 4, 6, 2);
+      if (f == 8) quad(4, 6, 2, 0);
+      if (f == 8) quad(1, 3, 7, 5);
+    }
+    const std::optional<Complex> complex = cells::complex_of_walls(two, {}, {.2, {}}, {});
+    ASSERT_TRUE(complex);
+    expect_in_contact(*complex, {1, 1}, 1e-4);
+  }
+}
+
+TEST(Contacts, SolidsOfOneFileByName) {
+  SurfaceMesh both = testing::joined(faceted_ring(24, 5, 10, 4), faceted_pin(25, 5, 0, 4));
+  both.patch_names = {"ring", "pin"};
+  both.patch.assign(both.triangles.size(), 1);
+  std::fill(both.patch.begin(), both.patch.begin() + 24 * 8, 0);
+  const std::optional<Complex> complex = cells::complex_of_walls(both, {}, {1, {}}, {});
+  ASSERT_TRUE(complex);
+  EXPECT_EQ(complex->surface.region_names, (std::vector<std::string>{"ring", "pin"}));
+  expect_in_contact(*complex, {4 * (polygon(24, 10) - polygon(24, 5)), 4 * polygon(24, 5)}, 1e-9);
+}
+
+TEST(Contacts, ThreeBodiesAtOneEdge) {
+  // A ring of three parts around a pin, all faceted apart, a little off.
+  const double third = 2 * std::acos(-1) / 3;
+  std::vector<Body> bodies{{"pin", faceted_pin(17, 2, 0, 2)}};
+  for (int i = 0; i < 3; ++i)
+    bodies.push_back({"part" + std::to_string(i),
+                      testing::faceted_segment(5 + i, 2, 4, 1e-5 * i, 2 - 1e-4 * i, i * third, (i + 1) * third)});
+  const Complex complex = joined_at(bodies, .5);
+  ASSERT_EQ(complex.volumes.size(), 4U);
+  EXPECT_TRUE(self_intersections(complex.surface.points, complex.surface.triangles).empty());
+  double all = 0;
+  for (const double v : complex.volumes) all += v;
+  EXPECT_NEAR(all, 2 * polygon(18, 4), 2.5);
+}
+
+TEST(Contacts, NothingIsMovedWithoutTolerance) {
+  const SurfaceMesh a = testing::cube(1), b = testing::transformed(testing::cube(1), 1, {.999, 0, 0});
+  const Complex complex = joined_at({{"a", a}, {"b", b}}, .2, 0.0);
+  EXPECT_NEAR(complex.volumes[0], .999, 1e-12);
+  EXPECT_NEAR(complex.volumes[1], 1, 1e-12);
+}
+
+TEST(Contacts, WallsFartherApartStay) {
+  // Apart by half of the size, and plates nearer than that but no thicker than what is between them.
+  const auto plates = [](double thickness, double gap) {
+    return std::vector<Body>{{"low", testing::box(1, 1, thickness)},
+                             {"high", testing::transformed(testing::box(1, 1, thickness), 1, {0, 0, thickness + gap})}};
+  };
+  EXPECT_NEAR(joined_at(plates(1, .1), .2).volumes[1], 1, 1e-12);
+  EXPECT_NEAR(joined_at(plates(.02, .01), .2).volumes[1], .02, 1e-12);
+  EXPECT_NEAR(joined_at(plates(1, .01), .2).volumes[1], 1.01, 1e-12);
+}
+
+TEST(Contacts, ASheetThatEndsJustBeforeAWall) {
+  SurfaceMesh sheet;
+  constexpr double kShort = 1e-4;
+  sheet.points = {
+      {kShort, kShort, .5}, {1 - kShort, kShort, .5}, {1 - kShort, 1 - kShort, .5}, {kShort, 1 - kShort, .5}};
+  sheet.triangles = {{0, 1, 2}, {0, 2, 3}};
+  const Complex complex = cells::embed_sheets(testing::cube(1), {{"mid", sheet}}, {}, {.2, {}}, {});
+  double area = 0;
+  for (std::size_t t = 0; t < complex.surface.triangles.size(); ++t) {
+    if (complex.surface.sides[t][0] != complex.surface.sides[t][1]) continue;
+    const auto [a, b, c] = complex.surface.triangles[t];
+    const auto& p = complex.surface.points;
+    area += length(cross(p[b] - p[a], p[c] - p[a])) / 2;
+  }
+  EXPECT_NEAR(area, 1, 1e-9);
+}
+
+}  // namespace
+}  // namespace octafront
