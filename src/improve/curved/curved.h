@@ -37,6 +37,10 @@ double curved_volume(const TetMesh& mesh);
 /// The same of each region of a mesh, linear ones too.
 std::vector<double> curved_volumes(const TetMesh& mesh);
 
+/// What chords of a linear mesh cut off each region: the volume between flat faces and those that parabolas on the true
+/// geometry bound, which is negative where they bend inward. Unit: input unit cubed.
+std::vector<double> volumes_cut_off(const TetMesh& mesh, const TrueGeometry& geometry);
+
 /// With straight edges.
 SecondOrderSummary add_straight_edges(TetMesh& mesh, const RunContext& context);
 

@@ -14,6 +14,7 @@
 #include "improve/curved/smooth_surface.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <numeric>
 #include <vector>
@@ -89,6 +90,16 @@ std::vector<double> volumes_of_elements(const TetMesh& mesh) {
   return volumes;
 }
 
+/// Of face i of an element, outward.
+std::array<Vec3, 4> face_areas(const TetMesh& mesh, TetIndex t) {
+  std::array<Vec3, 4> areas;
+  for (std::size_t i = 0; i < 4; ++i) {
+    const auto corner = [&](std::size_t k) { return mesh.points[mesh.tets[t][kTetFaces[i][k]]]; };
+    areas[i] = 0.5 * double_area_normal(corner(0), corner(1), corner(2));
+  }
+  return areas;
+}
+
 SurfaceMesh boundary_of_mesh(const TetMesh& mesh) {
   return {mesh.points, mesh.boundary, {}, {}, {}};
 }
@@ -154,6 +165,27 @@ std::vector<double> curved_volumes(const TetMesh& mesh) {
     const std::uint32_t region = mesh.region.empty() ? 0 : mesh.region[t];
     if (region >= of_region.size()) of_region.resize(region + 1, 0);
     of_region[region] += volumes[t];
+  }
+  return of_region;
+}
+
+// An edge that bends by d moves each face beside it by 4 s t d at the weights s and t of its ends, by d / 3 on average.
+std::vector<double> volumes_cut_off(const TetMesh& mesh, const TrueGeometry& geometry) {
+  const std::vector<curved::EdgeBend> bends = curved::find_bends(mesh, geometry).edges;
+  std::vector<double> of_region;
+  for (TetIndex t = 0; t < mesh.tets.size(); ++t) {
+    const std::uint32_t region = mesh.region.empty() ? 0 : mesh.region[t];
+    if (region >= of_region.size()) of_region.resize(region + 1, 0);
+    const std::array<Vec3, 4> area = face_areas(mesh, t);
+    for (std::size_t e = 0; e < 6; ++e) {
+      const auto [i, j] = kTetEdges[e];
+      const auto [low, high] = std::minmax(mesh.tets[t][i], mesh.tets[t][j]);
+      const Edge edge{low, high};
+      const auto found = std::ranges::lower_bound(bends, edge, {}, &curved::EdgeBend::edge);
+      if (found == bends.end() || found->edge != edge) continue;
+      for (int face = 0; face < 4; ++face)
+        if (face != i && face != j) of_region[region] += dot(area[face], found->by) / 3;
+    }
   }
   return of_region;
 }

@@ -367,9 +367,9 @@ class BoundaryEditor {
     const Vec3 around{limit, limit, limit};
     box = {box.lo - around, box.hi + around};
     // An input triangle may be far larger than what changed: elsewhere nothing of it needs a look.
-    const auto is_doubtful = [&, look = farther_than(limit, limit, near_new, finest)](const TriangleCorners& part,
-                                                                                      Vec3 middle, double reach) {
-      return box_of(part).overlaps(box) ? look(part, middle, reach) : Part::kWithin;
+    const auto is_doubtful = [&, look = farther_than(limit, limit, near_new, finest)](PartCorners part, Vec3 middle,
+                                                                                      double reach) {
+      return box_of_part(part).overlaps(box) ? look(part, middle, reach) : Part::kWithin;
     };
     if (!guide_.tree().for_each_box_near(box, [&](std::uint32_t, const TriangleCorners& t) {
           return for_each_doubtful_part(t, is_doubtful, is_kept);

@@ -485,8 +485,9 @@ class Improvement {
       const Shortfall::Class& c = s.by_cause[cause];
       if (c.elements == 0) continue;
       const Vec3 p = mesh.point(mesh.tet(c.worst)[0]);
-      note += fmt::format("{}{} {} (the worst, {:.3f}, near ({:.6g}, {:.6g}, {:.6g}))", separator, c.elements,
-                          kCauseNames[cause].words, mesh.shape(c.worst).score, p.x, p.y, p.z);
+      // How poor it is the summary says: it may be moved still.
+      note += fmt::format("{}{} {} (the worst near ({:.6g}, {:.6g}, {:.6g}))", separator, c.elements,
+                          kCauseNames[cause].words, p.x, p.y, p.z);
       separator = ", ";
     }
     return note;

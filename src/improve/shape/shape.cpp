@@ -27,6 +27,10 @@ OCTAFRONT_KERNEL Faces faces_of_edges(Vec3 u, Vec3 v, Vec3 w) {
   return f;
 }
 
+/// Of the longest edge at a corner, half of which is the least circumradius: below by more than rounding of one that is
+/// a diameter.
+constexpr double kLeastDiameter = 0.9;
+
 /// Six times the volume; the circumradius times twice that.
 struct Volume {
   double det;
@@ -34,13 +38,15 @@ struct Volume {
 };
 
 OCTAFRONT_KERNEL Volume volume_of(const Faces& f, Vec3 u, Vec3 v, Vec3 w) {
-  const Vec3 center = squared_length(u) * f.nb + squared_length(v) * f.nc + squared_length(w) * f.nd;
-  return {dot(f.nd, w), std::sqrt(squared_length(center) + kTiny)};
+  const double uu = squared_length(u), vv = squared_length(v), ww = squared_length(w), det = dot(f.nd, w);
+  const Vec3 center = uu * f.nb + vv * f.nc + ww * f.nd;
+  // Of four points on one circle the centre cancels to nothing: a flat element must not come out as a good one.
+  const double least = kLeastDiameter * kLeastDiameter * det * det * greater(uu, greater(vv, ww));
+  return {det, std::sqrt(greater(squared_length(center), least) + kTiny)};
 }
 
 OCTAFRONT_KERNEL double beta_of(const Faces& f, const Volume& v) {
   const double beta = 6 * v.det * std::abs(v.det) / ((f.la + f.lb + f.lc + f.ld) * v.center);
-  // Where the centre of a flat element cancels to nothing, rounding alone decides the quotient.
   return greater(lesser(1, beta), -1);
 }
 

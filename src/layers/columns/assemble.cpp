@@ -83,6 +83,7 @@ class Opening {
     for (std::uint32_t f = 0; f < whole_.triangles.size(); ++f) add(f);
     SurfaceMesh& surface = made_.surface;
     surface.patch_names = whole_.patch_names, surface.region_names = whole_.region_names;
+    surface.patch_labels = whole_.patch_labels;
     if (whole_.sides.empty())
       surface.sides.clear();
     else
@@ -272,6 +273,7 @@ class Assembly {
 
   void make_boundary() {
     boundary_.patch_names = whole_.patch_names;
+    boundary_.patch_labels = whole_.patch_labels;
     for (std::uint32_t f = 0; f < whole_.triangles.size(); ++f) add_face(f);
     for (std::uint32_t i = 0; i < grown_.size(); ++i) {
       for (const Rim& rim : rims_of(grown_[i].wall))

@@ -31,6 +31,7 @@ Unfolded unfolded(const WorkingMesh& mesh, const SurfaceMesh& input, MendedFolds
     surface.points.push_back(mesh.points[v]);
   }
   surface.patch_names = input.patch_names;
+  surface.patch_labels = input.patch_labels;
   surface.region_names = input.region_names;
   surface.region_labels = input.region_labels;
   for (const std::uint32_t t : mesh.alive_triangles()) {

@@ -51,16 +51,18 @@ class PartsOfInput {
 
   void set_limits(double limit, double far) { limit_ = limit, far_ = far; }
 
-  Part operator()(const TriangleCorners& part, Vec3 middle, double reach) const {
+  Part operator()(PartCorners part, Vec3 middle, double reach) const {
+    // What is nearest to the last part mostly is nearest to this one, or near enough.
+    double d = nearest_ != kNone ? distance_to(made_.corners(nearest_), middle) : HUGE_VAL;
+    if (is_within(part, d, reach)) return Part::kWithin;
     // Where rounding hides even the last part's triangle behind the bound, that one is as good.
-    if (const std::uint32_t nearest = made_.nearest(middle, bound(middle)).triangle; nearest != kNone)
+    const std::uint32_t nearest = made_.nearest(middle, bound(d)).triangle;
+    if (nearest != kNone && nearest != nearest_) {
       nearest_ = nearest;
-    const TriangleCorners& t = made_.corners(nearest_);
-    const double d = distance_to(t, middle);
-    if (d + reach < limit_) return Part::kWithin;
-    if (d < limit_ && std::ranges::all_of(part, [&](Vec3 p) { return distance_to(t, p) < limit_; }))
-      return Part::kWithin;
-    return reach <= finest(t) || !(d < far_) ? Part::kVisit : Part::kDivide;
+      d = distance_to(made_.corners(nearest_), middle);
+      if (is_within(part, d, reach)) return Part::kWithin;
+    }
+    return reach <= finest(made_.corners(nearest_)) || !(d < far_) ? Part::kVisit : Part::kDivide;
   }
 
  private:
@@ -68,11 +70,16 @@ class PartsOfInput {
     return distance(p, closest_point_on_triangle(p, t[0], t[1], t[2]));
   }
 
-  /// The nearest triangle to p is no farther than that of the last part, and a little more.
-  double bound(Vec3 p) const {
-    if (nearest_ == kNone) return TriangleTree::kFar;
-    const double last = distance_to(made_.corners(nearest_), p);
-    return 1.001 * last * last + std::numeric_limits<double>::min();
+  /// Of a part, by the triangle that is nearest, at `d` from its middle.
+  bool is_within(PartCorners part, double d, double reach) const {
+    if (d + reach < limit_) return true;
+    return d < limit_ &&
+           std::ranges::all_of(part, [&](Vec3 p) { return distance_to(made_.corners(nearest_), p) < limit_; });
+  }
+
+  /// The nearest triangle is no farther than that of the last part, and a little more.
+  double bound(double last) const {
+    return nearest_ == kNone ? TriangleTree::kFar : 1.001 * last * last + std::numeric_limits<double>::min();
   }
 
   double finest(const TriangleCorners& t) const {

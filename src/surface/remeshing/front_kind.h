@@ -61,7 +61,7 @@ class FrontKind {
   virtual bool is_stuck() const { return false; }
   /// Whether the input's triangles are so long that none of them may move if all of them stay.
   virtual bool has_needles_kept() const { return false; }
-  virtual void finish(Remeshed& made, const Nearness& near) const = 0;
+  virtual void finish(Remeshed&, const Nearness&) const {}
 
  protected:
   /// Divides what is longer than the sizes of the draft ask for, and makes good triangles of it.

@@ -10,81 +10,128 @@
 #include <utility>
 #include <vector>
 
-namespace octafront::remeshing {
+namespace octafront {
 
 namespace {
 
 constexpr double kMostMove = 0.2;  // of the shortest edge: triangles keep their shape
-constexpr int kVolumeSteps = 3;    // volumes are nearly linear in moves so small
-constexpr int kRoundsBack = 8;
-constexpr std::size_t kMostRegionsSolved = 3000;  // the system is dense
-constexpr double kSamePlane = 1e-10;              // what cosines of equal normals may lack of 1
+constexpr int kVolumeSteps = 6;
+/// Volumes this near to what is wanted need no further step: a hundredth of what a note is written for.
+constexpr double kVolumeReached = 1e-4;
+constexpr int kRoundsBack = 8, kHalves = 3;  // of these rounds so many go back half the way
+constexpr double kSamePlane = 1e-10;         // what cosines of equal normals may lack of 1
+constexpr int kMostSolverSteps = 400;
+constexpr double kSolved = 1e-12;  // of the first residual, squared
 
-std::vector<double> volumes_of(const SurfaceMesh& complex, std::size_t regions) {
-  std::vector<double> volumes(regions, 0);
-  const Vec3 origin = complex.points.empty() ? Vec3{} : complex.points[0];
-  for (std::size_t t = 0; t < complex.triangles.size(); ++t) {
-    const auto& [a, b, c] = complex.triangles[t];
-    const double v = dot(complex.points[a] - origin, cross(complex.points[b] - origin, complex.points[c] - origin)) / 6;
-    const auto [front, behind] = complex.sides[t];
-    if (front != kNone) volumes[front] -= v;
-    if (behind != kNone) volumes[behind] += v;
+/// What a vertex adds to the volumes of the regions around it.
+struct Gradient {
+  std::vector<std::pair<std::uint32_t, Vec3>> of;
+  double area = 0;
+  void add(std::uint32_t region, Vec3 a) {
+    if (region == kNone) return;
+    for (auto& [r, g] : of)
+      if (r == region) {
+        g += a;
+        return;
+      }
+    of.push_back({region, a});
   }
-  return volumes;
-}
+  /// Where these pressures move it.
+  Vec3 move_by(const std::vector<double>& pressure) const {
+    Vec3 move;
+    for (const auto& [r, a] : of) move += a * (pressure[r] / area);
+    return move;
+  }
+};
 
-/// L L^T x = b in place, of a matrix by its lower half; regions that nothing moves have a row of zeros and stay.
-void solve(std::vector<double>& k, std::vector<double>& b) {
-  const std::size_t n = b.size();
-  for (std::size_t i = 0; i < n; ++i) {
-    for (std::size_t j = 0; j <= i; ++j) {
-      double sum = k[i * n + j];
-      for (std::size_t m = 0; m < j; ++m) sum -= k[i * n + m] * k[j * n + m];
-      if (j < i)
-        k[i * n + j] = sum / k[j * n + j];
-      else
-        k[i * n + i] = sum > 0 ? std::sqrt(sum) : HUGE_VAL;
+/// By conjugate gradients, scaled by the diagonal: the pressures that change volumes by `missing`. Regions that nothing
+/// moves have a row of zeros, and none.
+class PressureSolver {
+ public:
+  explicit PressureSolver(const std::vector<Gradient>& gradients) : gradients_(gradients) {}
+
+  std::vector<double> solve(std::vector<double> missing) const {
+    const std::size_t n = missing.size();
+    std::vector<double> x(n, 0), p(n, 0), z(n), diagonal = diagonal_of(n);
+    const auto scale = [&] {
+      for (std::size_t i = 0; i < n; ++i) z[i] = diagonal[i] > 0 ? missing[i] / diagonal[i] : 0;
+    };
+    scale();
+    double rz = product(missing, z), beta = 0;
+    const double enough = kSolved * rz;
+    for (int step = 0; step < kMostSolverSteps && rz > enough; ++step) {
+      for (std::size_t i = 0; i < n; ++i) p[i] = z[i] + beta * p[i];
+      const std::vector<double> change = change_by(p);
+      const double curve = product(p, change);
+      if (!(curve > 0)) break;
+      for (std::size_t i = 0; i < n; ++i) x[i] += rz / curve * p[i], missing[i] -= rz / curve * change[i];
+      scale();
+      const double next = product(missing, z);
+      beta = next / rz;
+      rz = next;
     }
-    double sum = b[i];
-    for (std::size_t m = 0; m < i; ++m) sum -= k[i * n + m] * b[m];
-    b[i] = sum / k[i * n + i];
+    return x;
   }
-  for (std::size_t i = n; i-- > 0;) {
-    for (std::size_t m = i + 1; m < n; ++m) b[i] -= k[m * n + i] * b[m];
-    b[i] /= k[i * n + i];
+
+ private:
+  static double product(const std::vector<double>& a, const std::vector<double>& b) {
+    double sum = 0;
+    for (std::size_t i = 0; i < a.size(); ++i) sum += a[i] * b[i];
+    return sum;
   }
-}
+  std::vector<double> diagonal_of(std::size_t regions) const {
+    std::vector<double> diagonal(regions, 0);
+    for (const Gradient& g : gradients_)
+      for (const auto& [r, a] : g.of)
+        if (g.area > 0) diagonal[r] += squared_length(a) / g.area;
+    return diagonal;
+  }
+  std::vector<double> change_by(const std::vector<double>& pressure) const {
+    std::vector<double> change(pressure.size(), 0);
+    for (const Gradient& g : gradients_) {
+      if (!(g.area > 0)) continue;
+      const Vec3 move = g.move_by(pressure);
+      for (const auto& [r, a] : g.of) change[r] += dot(a, move);
+    }
+    return change;
+  }
+
+  const std::vector<Gradient>& gradients_;
+};
 
 class Keeper {
  public:
-  Keeper(SurfaceMesh& complex, const Features& features, const SurfaceMesh& input)
-      : complex_(complex),
-        before_(complex.points),
-        regions_(std::max(region_count(complex), region_count(input))),
-        wanted_(volumes_of(input, regions_)),
-        moves_(complex.points.size(), 1) {
+  Keeper(SurfaceMesh& surface, const Features& features, std::span<const double> wanted,
+         std::span<const VertexIndex> fixed)
+      : surface_(surface),
+        before_(surface.points),
+        wanted_(wanted.begin(), wanted.end()),
+        moves_(surface.points.size(), 1) {
+    wanted_.resize(std::max<std::size_t>(wanted_.size(), region_count(surface)), 0);
     for (const Edge& e : features.edges) moves_[e[0]] = moves_[e[1]] = 0;
     for (const VertexIndex v : features.corners) moves_[v] = 0;
+    for (const VertexIndex v : fixed) moves_[v] = 0;
     find_reach();
     keep_flat_parts();
   }
 
-  std::uint64_t run(const RunContext& context) {
+  std::uint64_t run(const TooFar& too_far, const RunContext& context) {
     for (int step = 0; step < kVolumeSteps; ++step) {
       context.check();
-      press();
+      const std::vector<double> missing = missing_volumes();
+      if (missing.empty()) break;
+      press(missing);
+      go_back(too_far, context);
     }
-    if (!take_back_crossings(context) || first_complex_defect_but_crossings(complex_, context))
-      complex_.points = before_;
     std::uint64_t moved = 0;
-    for (std::size_t v = 0; v < before_.size(); ++v) moved += complex_.points[v] != before_[v];
+    for (std::size_t v = 0; v < before_.size(); ++v) moved += surface_.points[v] != before_[v];
     return moved;
   }
 
  private:
   void find_reach() {
-    reach_.assign(complex_.points.size(), HUGE_VAL);
-    for (const Triangle& t : complex_.triangles)
+    reach_.assign(surface_.points.size(), HUGE_VAL);
+    for (const Triangle& t : surface_.triangles)
       for (int i = 0; i < 3; ++i) {
         const VertexIndex a = t[i], b = t[(i + 1) % 3];
         const double l = kMostMove * distance(before_[a], before_[b]);
@@ -93,16 +140,16 @@ class Keeper {
       }
   }
 
-  /// Faces on the box of an image are to stay in it: no vertex with two triangles in one plane moves.
+  /// Flat parts, as those on the box of an image, are to stay so: no vertex with two triangles in one plane moves.
   void keep_flat_parts() {
     std::vector<Vec3> normal;
-    for (const Triangle& t : complex_.triangles)
+    for (const Triangle& t : surface_.triangles)
       normal.push_back(normalized(cross(before_[t[1]] - before_[t[0]], before_[t[2]] - before_[t[0]])));
-    const Groups<> at(complex_.points.size(), [&](const auto& add) {
-      for (std::uint32_t t = 0; t < complex_.triangles.size(); ++t)
-        for (const VertexIndex v : complex_.triangles[t]) add(v, t);
+    const Groups<> at(surface_.points.size(), [&](const auto& add) {
+      for (std::uint32_t t = 0; t < surface_.triangles.size(); ++t)
+        for (const VertexIndex v : surface_.triangles[t]) add(v, t);
     });
-    for (VertexIndex v = 0; v < complex_.points.size(); ++v) {
+    for (VertexIndex v = 0; v < surface_.points.size(); ++v) {
       const auto around = at[v];
       for (std::size_t i = 0; i < around.size() && moves_[v]; ++i)
         for (std::size_t k = i + 1; k < around.size(); ++k)
@@ -110,84 +157,95 @@ class Keeper {
     }
   }
 
-  /// What a vertex adds to the volumes of the regions around it.
-  struct Gradient {
-    std::vector<std::pair<std::uint32_t, Vec3>> of;
-    double area = 0;
-    void add(std::uint32_t region, Vec3 a) {
-      if (region == kNone) return;
-      for (auto& [r, g] : of)
-        if (r == region) {
-          g += a;
-          return;
-        }
-      of.push_back({region, a});
-    }
-  };
-
   std::vector<Gradient> gradients() const {
-    std::vector<Gradient> all(complex_.points.size());
-    for (std::size_t t = 0; t < complex_.triangles.size(); ++t) {
-      const auto& [a, b, c] = complex_.triangles[t];
-      const Vec3 third = cross(complex_.points[b] - complex_.points[a], complex_.points[c] - complex_.points[a]) / 6;
+    std::vector<Gradient> all(surface_.points.size());
+    for (std::size_t t = 0; t < surface_.triangles.size(); ++t) {
+      const auto& [a, b, c] = surface_.triangles[t];
+      const Vec3 third = cross(surface_.points[b] - surface_.points[a], surface_.points[c] - surface_.points[a]) / 6;
+      const auto [front, behind] = surface_.sides_of(t);
       for (const VertexIndex v : {a, b, c}) {
         if (!moves_[v]) continue;
-        all[v].add(complex_.sides[t][1], third);
-        all[v].add(complex_.sides[t][0], third * -1);
+        all[v].add(behind, third);
+        all[v].add(front, third * -1);
         all[v].area += length(third);
       }
     }
     return all;
   }
 
-  /// One step towards the volumes wanted.
-  void press() {
+  /// Empty if all regions have what is wanted.
+  std::vector<double> missing_volumes() const {
+    std::vector<double> missing = volumes_of_regions(surface_);
+    missing.resize(wanted_.size(), 0);
+    bool is_reached = true;
+    for (std::size_t r = 0; r < wanted_.size(); ++r) {
+      missing[r] = wanted_[r] > 0 ? wanted_[r] - missing[r] : 0;
+      is_reached &= std::abs(missing[r]) <= kVolumeReached * wanted_[r];
+    }
+    return is_reached ? std::vector<double>{} : missing;
+  }
+
+  /// One step towards the volumes wanted. Who is at the end of its way leaves further steps to others.
+  void press(const std::vector<double>& missing) {
     const std::vector<Gradient> gradient = gradients();
-    std::vector<double> k(regions_ * regions_, 0), pressure = volumes_of(complex_, regions_);
-    for (std::size_t r = 0; r < regions_; ++r) pressure[r] = wanted_[r] - pressure[r];
-    for (const Gradient& g : gradient)
-      for (const auto& [r, a] : g.of)
-        for (const auto& [s, b] : g.of)
-          if (s <= r && g.area > 0) k[r * regions_ + s] += dot(a, b) / g.area;
-    solve(k, pressure);
+    const std::vector<double> pressure = PressureSolver(gradient).solve(missing);
     for (std::size_t v = 0; v < gradient.size(); ++v) {
-      const Gradient& g = gradient[v];
-      if (!(g.area > 0)) continue;
-      Vec3 move;
-      for (const auto& [r, a] : g.of) move += a * (pressure[r] / g.area);
-      const Vec3 all = complex_.points[v] + move - before_[v];
+      if (!(gradient[v].area > 0)) continue;
+      const Vec3 all = surface_.points[v] + gradient[v].move_by(pressure) - before_[v];
       const double l = length(all);
-      complex_.points[v] = l <= reach_[v] ? before_[v] + all : before_[v] + all * (reach_[v] / l);
+      if (l >= reach_[v]) moves_[v] = 0;
+      surface_.points[v] = before_[v] + (l <= reach_[v] ? all : all * (reach_[v] / l));
     }
   }
 
-  /// False if something crosses whatever goes back.
-  bool take_back_crossings(const RunContext& context) {
+  void go_back(const TooFar& too_far, const RunContext& context) {
     for (int round = 0; round < kRoundsBack; ++round) {
       context.check();
-      const auto crossings = find_crossings(complex_);
-      if (crossings.empty()) return true;
-      for (const auto& pair : crossings)
-        for (const std::uint32_t t : pair)
-          for (const VertexIndex v : complex_.triangles[t]) complex_.points[v] = before_[v];
+      const std::vector<VertexIndex> back = too_far();
+      if (back.empty()) return;
+      for (const VertexIndex v : back) {
+        surface_.points[v] = round < kHalves ? (before_[v] + surface_.points[v]) / 2 : before_[v];
+        moves_[v] = 0;
+      }
     }
-    return false;
+    if (!too_far().empty()) surface_.points = before_;
   }
 
-  SurfaceMesh& complex_;
+  SurfaceMesh& surface_;
   const std::vector<Vec3> before_;
-  const std::size_t regions_;
-  const std::vector<double> wanted_;
+  std::vector<double> wanted_;
   std::vector<std::uint8_t> moves_;
   std::vector<double> reach_;
 };
 
 }  // namespace
 
-std::uint64_t keep_volumes(SurfaceMesh& complex, const Features& features, const SurfaceMesh& input,
-                           const RunContext& context) {
-  if (complex.sides.empty() || region_count(input) > kMostRegionsSolved) return 0;
-  return Keeper(complex, features, input).run(context);
+std::uint64_t keep_volumes(SurfaceMesh& surface, const Features& features, std::span<const double> wanted,
+                           const TooFar& too_far, std::span<const VertexIndex> fixed, const RunContext& context) {
+  return Keeper(surface, features, wanted, fixed).run(too_far, context);
 }
 
-}  // namespace octafront::remeshing
+namespace remeshing {
+
+std::vector<VertexIndex> vertices_in_crossings(const SurfaceMesh& surface) {
+  std::vector<VertexIndex> found;
+  for (const auto& pair : find_crossings(surface))
+    for (const std::uint32_t t : pair)
+      found.insert(found.end(), surface.triangles[t].begin(), surface.triangles[t].end());
+  std::ranges::sort(found);
+  found.erase(std::unique(found.begin(), found.end()), found.end());
+  return found;
+}
+
+std::uint64_t keep_volumes_clean(SurfaceMesh& surface, const Features& features, std::span<const double> wanted,
+                                 std::span<const VertexIndex> fixed, const RunContext& context) {
+  const std::vector<Vec3> before = surface.points;
+  const TooFar crossing = [&] { return vertices_in_crossings(surface); };
+  const std::uint64_t moved = keep_volumes(surface, features, wanted, crossing, fixed, context);
+  if (moved == 0 || surface.sides.empty() || !first_complex_defect_but_crossings(surface, context)) return moved;
+  surface.points = before;
+  return 0;
+}
+
+}  // namespace remeshing
+}  // namespace octafront

@@ -47,6 +47,7 @@ Outcome outcome_of(Draft&& draft, const SurfaceMesh& input) {
     if (mesh.kind[v] == VertexKind::kCorner) c.result.features.corners.push_back(old_to_new[v]);
   }
   s.patch_names = input.patch_names;
+  s.patch_labels = input.patch_labels;
   s.region_names = input.region_names;
   s.region_labels = input.region_labels;
   for (std::uint32_t t = 0; t < mesh.triangle_count(); ++t) {

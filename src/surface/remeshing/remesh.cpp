@@ -98,6 +98,14 @@ class Remesher {
     return made;
   }
 
+  /// Those of the kind, within the limits.
+  StripRules strips() const {
+    StripRules rules = kind_.strips();
+    rules.floor = std::max(rules.floor, work_.limits.least_part);
+    rules.least = work_.limits.least;
+    return rules;
+  }
+
   /// The input with the points of the front in it.
   Draft with_all_points() {
     const RunContext& context = work_.stage.context();
@@ -105,7 +113,7 @@ class Remesher {
     InputSurface& input = kind_.input();
     set_features(input, {});  // no walk crosses seams
     set_features(input, features_at_scale(input, kind_.features(), sizes_.now()));
-    const SizeField in_strips = fitted_to_strips(input, sizes_.now(), kind_.strips(), context);
+    const SizeField in_strips = fitted_to_strips(input, sizes_.now(), strips(), context);
     std::vector<std::uint8_t> is_fixed = mark_kept_places(input, work_.known.tree(), sizes_.kept_places());
     SizeField sizes = work_.budget.affordable(kind_.fitted(in_strips, is_fixed), sizes_.first(), counts.rounds);
     std::vector<Curve> curves = kind_.curves(sizes, is_fixed);

@@ -6,7 +6,6 @@
 #include "surface/folds/draw_to_input.h"
 #include "surface/ground/crossings.h"
 #include "surface/remeshing/front_kind.h"
-#include "surface/remeshing/keep_volumes.h"
 #include "surface/remeshing/nearness.h"
 #include "surface/remeshing/periodic_faces.h"
 #include "surface/sizes/corner_sizes.h"
@@ -96,8 +95,8 @@ class SeamedFront : public FrontKind {
   /// Smaller where corners of seams are nearer together; the same on opposite faces of a cell.
   SizeField fitted(const SizeField& in_strips, const std::vector<std::uint8_t>& is_fixed) const override {
     const RunContext& context = work_.stage.context();
-    return periodic_sizes(fitted_to_corners(seamed_.input, seamed_, is_fixed, in_strips, context), work_.surface(),
-                          work_.periods, context);
+    return periodic_sizes(fitted_to_corners(seamed_.input, seamed_, is_fixed, in_strips, work_.limits.least, context),
+                          work_.surface(), work_.periods, context);
   }
 
   std::vector<Curve> curves(const SizeField& sizes, std::vector<std::uint8_t>& is_fixed) override {
@@ -147,12 +146,6 @@ class SeamedFront : public FrontKind {
 
   void cap_far(const Nearness& near, RoundSizes& sizes) const override {
     sizes.add(near.wanted, {.gradation = kSteep});
-  }
-
-  void finish(Remeshed& made, const Nearness&) const override {
-    if (!work_.options.keep_volumes) return;
-    const std::uint64_t moved = keep_volumes(made.surface, made.features, work_.surface(), work_.stage.context());
-    work_.stage.count("vertices moved for volumes", static_cast<double>(moved));
   }
 
  private:

@@ -39,8 +39,8 @@ struct Corner {
 class CornerFitter {
  public:
   CornerFitter(const InputSurface& input, const SeamedSurface& seamed, const SeamedCurves& chained,
-               const SizeField& sizes)
-      : mesh_(input.mesh), place_(seamed.place), curves_(chained.curves), sizes_(sizes) {
+               const SizeField& sizes, double least)
+      : mesh_(input.mesh), place_(seamed.place), curves_(chained.curves), sizes_(sizes), least_(least) {
     for (std::uint32_t c = 0; c < curves_.size(); ++c)
       if (chained.group[c] == c) add(c);
     tree_.emplace(mesh_.points, segments_);
@@ -118,14 +118,15 @@ class CornerFitter {
   }
 
   void add_place(Vec3 p, double room, std::vector<PointSize>& places) const {
-    const double size = sizes_.at(p), wanted = kSizePerRoom * room;
-    if (wanted < kWorthwhileAtCorner * size) places.push_back({p, std::max(wanted, kFloor * size)});
+    const double size = sizes_.at(p), wanted = std::max({kSizePerRoom * room, kFloor * size, least_});
+    if (wanted < kWorthwhileAtCorner * size) places.push_back({p, wanted});
   }
 
   const HalfEdgeMesh& mesh_;
   const std::vector<VertexIndex>& place_;
   const std::vector<Curve>& curves_;
   const SizeField& sizes_;
+  const double least_;
   std::map<VertexIndex, Corner> corners_;  ///< by their place in the complex
   std::vector<Triangle> segments_;         ///< of all curves, flat triangles for the tree
   std::vector<std::uint32_t> curve_of_;    ///< per segment
@@ -136,9 +137,9 @@ class CornerFitter {
 }  // namespace
 
 SizeField fitted_to_corners(const InputSurface& input, const SeamedSurface& seamed, std::vector<std::uint8_t> is_fixed,
-                            const SizeField& sizes, const RunContext& context) {
+                            const SizeField& sizes, double least, const RunContext& context) {
   const SeamedCurves chained = chained_curves(input, seamed, sizes, is_fixed);
-  return capped_at(sizes, CornerFitter(input, seamed, chained, sizes).run(context), context,
+  return capped_at(sizes, CornerFitter(input, seamed, chained, sizes, least).run(context), context,
                    {.gradation = kSteepAroundCorners});
 }
 

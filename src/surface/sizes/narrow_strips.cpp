@@ -60,7 +60,7 @@ double size_beside(const InputSurface& input, HalfEdge h, Vec3 p, double old, co
   const double width = width_at(input, h, p, kWorthwhileStrip / rules.size_per_width * old, rules.parallel);
   const double wanted = rules.size_per_width * width;
   if (!(wanted < kWorthwhileStrip * old) || width < rules.hopeless * old) return old;
-  return std::max(rules.floor * old, wanted);
+  return std::min(old, std::max({rules.floor * old, rules.least, wanted}));
 }
 
 /// Looks in the middle between two points of h and, where sizes rise so fast that it matters, nearer to them.

@@ -34,6 +34,22 @@ using Objective = ImproveOptions::Objective;
 constexpr Objective kObjectives[] = {Objective::kBalanced,    Objective::kBeta,      Objective::kMinDihedral,
                                      Objective::kMaxDihedral, Objective::kMeanRatio, Objective::kSolver};
 
+// Their centre cancels to nothing, and so does the quotient of nothing by nothing that beta was.
+TEST(Shape, OfFourPointsOnACircleIsNeverCertain) {
+  testing::Random random(3);
+  for (int i = 0; i < 20000; ++i) {
+    const Vec3 u{random.unit(), random.unit(), random.unit()}, v{random.unit(), -random.unit(), random.unit()},
+        middle{random.unit(), random.unit(), random.unit()};
+    const Vec3 along = random.magnitude(1e-3, 1) * normalized(u), across = length(along) * normalized(cross(u, v));
+    // A rectangle, up to rounding.
+    const double flat = random.magnitude(1e-4, 1);
+    const Vec3 a = middle - along - flat * across, b = middle + along - flat * across,
+               c = middle + along + flat * across, d = middle - along + flat * across;
+    ASSERT_LT(shape_of(a, b, c, d).beta, kCertainBeta);
+    ASSERT_LT(shape_of(a, c, b, d).beta, kCertainBeta);
+  }
+}
+
 TEST(Shape, OfTheRegularTetrahedronIsWorthOneForEveryObjective) {
   for (const Objective objective : kObjectives) {
     const Shape s = shape_of({1, 1, 1}, {1, -1, -1}, {-1, 1, -1}, {-1, -1, 1}, objective);
