@@ -36,7 +36,8 @@ constexpr double kPlaces = kDivisionsOfBalance * kDivisionsOfBalance;
 
 class Balance {
  public:
-  Balance(const Walls& walls, std::span<const std::uint8_t> may_move, const Ground& ground, double tolerance)
+  Balance(const Walls& walls, std::span<const std::uint8_t> may_move, const Ground& ground,
+          std::span<const double> tolerance)
       : walls_(walls),
         may_move_(may_move),
         ground_(ground),
@@ -62,7 +63,7 @@ class Balance {
     const TriangleCorners& c = tree_.corners(t);
     const double reach = kReachOfBalance * std::sqrt(longest_squared_edge(c[0], c[1], c[2]));
     const double far = ground_.truth_of(c, walls_.surface.patch[t], walls_.outer[t] != 0, reach).distance;
-    return std::isfinite(far) && far > kFlatEnough * tolerance_;
+    return std::isfinite(far) && far > kFlatEnough * tolerance_[walls_.surface.patch[t]];
   }
 
   /// What lies between the smooth surface over a triangle and the ground, each corner's share.
@@ -93,18 +94,22 @@ class Balance {
     const SurfaceMesh& surface = walls_.surface;
     std::vector<Vec3> normal(surface.points.size()), step(surface.points.size());
     std::vector<double> area(surface.points.size(), 0), volume(surface.points.size(), 0);
+    std::vector<double> tolerance(surface.points.size(), HUGE_VAL);
     for (std::uint32_t t = 0; t < surface.triangles.size(); ++t) {
       const TriangleCorners& c = tree_.corners(t);
       const Vec3 n = 0.5 * double_area_normal(c[0], c[1], c[2]);
-      for (const VertexIndex v : surface.triangles[t]) normal[v] += n, area[v] += length(n);
+      for (const VertexIndex v : surface.triangles[t]) {
+        normal[v] += n, area[v] += length(n);
+        tolerance[v] = std::min(tolerance[v], tolerance_[surface.patch[t]]);
+      }
     }
     for (std::size_t k = 0; k < feet.size(); ++k) share_out(feet[k].on, volumes[k], volume);
     for (std::size_t v = 0; v < step.size(); ++v) {
       const double size = length(normal[v]);
       if (!may_move_[v] || !(size > kLeastNormal * area[v])) continue;
       // A point that moves takes a third of its normal's volume along.
-      const double most = kLongestOfBalance * tolerance_, way = std::clamp(3 * volume[v] / size, -most, most);
-      if (std::abs(way) > kLeastOfBalance * tolerance_) step[v] = way / size * normal[v];
+      const double most = kLongestOfBalance * tolerance[v], way = std::clamp(3 * volume[v] / size, -most, most);
+      if (std::abs(way) > kLeastOfBalance * tolerance[v]) step[v] = way / size * normal[v];
     }
     return step;
   }
@@ -112,7 +117,7 @@ class Balance {
   const Walls& walls_;
   std::span<const std::uint8_t> may_move_;
   const Ground& ground_;
-  double tolerance_;
+  std::span<const double> tolerance_;
   TriangleTree tree_;
   curved::SmoothSurface smooth_;
 };
@@ -120,7 +125,7 @@ class Balance {
 }  // namespace
 
 std::vector<Vec3> steps_to_balance(const Walls& walls, std::span<const std::uint8_t> may_move, const Ground& ground,
-                                   double tolerance) {
+                                   std::span<const double> tolerance) {
   return Balance(walls, may_move, ground, tolerance).steps();
 }
 

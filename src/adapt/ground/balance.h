@@ -14,8 +14,9 @@ namespace octafront::adapt {
 /// Per point of walls of a mesh on the ground: the step along its normal such that as much lies between the ground and
 /// what the walls stand for themselves (their own smooth surface, flat where there is none) on one side as on the
 /// other, weighted by the point's share of places; zero where that is next to nothing. Points that may not move leave
-/// their shares to the others of their triangles. Requires tolerance > 0.
+/// their shares to the others of their triangles. `tolerance`: per part of
+/// the ground's walls, which have the same numbers here; > 0.
 std::vector<Vec3> steps_to_balance(const Walls& walls, std::span<const std::uint8_t> may_move, const Ground& ground,
-                                   double tolerance);
+                                   std::span<const double> tolerance);
 
 }  // namespace octafront::adapt

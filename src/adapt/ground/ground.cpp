@@ -312,7 +312,8 @@ double Ground::cut_off(std::size_t edge, double length) const {
   return 0.25 * length * octafront::length(way_from(uses[0]) + way_from(uses[1]));
 }
 
-std::vector<Edge> Ground::kinks(const std::function<double(Vec3, Vec3)>& wanted, double tolerance) const {
+std::vector<Edge> Ground::kinks(const std::function<double(Vec3, Vec3)>& wanted,
+                                std::span<const double> tolerance) const {
   const auto& all = walls_.edges.edges;
   std::vector<std::uint8_t> is_kink(all.size(), 0);
   parallel_for(all.size(), [&](std::size_t e) {
@@ -321,7 +322,7 @@ std::vector<Edge> Ground::kinks(const std::function<double(Vec3, Vec3)>& wanted,
     const std::uint32_t t = uses[0] / 3, u = uses[1] / 3;
     if (walls_.surface.patch[t] != walls_.surface.patch[u] || is_covered(t) || is_covered(u)) return;
     const Vec3 a = walls_.surface.points[all[e][0]], b = walls_.surface.points[all[e][1]];
-    is_kink[e] = cut_off(e, wanted(0.5 * (a + b), way_from(uses[0]))) > tolerance;
+    is_kink[e] = cut_off(e, wanted(0.5 * (a + b), way_from(uses[0]))) > tolerance[walls_.surface.patch[t]];
   });
   std::vector<Edge> found;
   for (std::size_t e = 0; e < all.size(); ++e)

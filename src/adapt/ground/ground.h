@@ -60,9 +60,9 @@ class Ground {
   std::optional<Vec3> on_line(Vec3 p, std::uint32_t path, double reach) const;
 
   /// Edges of walls, within one part and on no line, where the ground bends such that edges across them of the length
-  /// wanted(place, direction) would cut off more than `tolerance`: where no smooth surface goes through the vertices
-  /// the old triangles are the ground. Ascending.
-  std::vector<Edge> kinks(const std::function<double(Vec3, Vec3)>& wanted, double tolerance) const;
+  /// wanted(place, direction) would cut off more than `tolerance`, per part: where no smooth surface goes through the
+  /// vertices the old triangles are the ground. Ascending.
+  std::vector<Edge> kinks(const std::function<double(Vec3, Vec3)>& wanted, std::span<const double> tolerance) const;
 
   /// How triangles of a part lie to it, at the worst of the places looked at: middles of triangles and of edges.
   struct Truth {

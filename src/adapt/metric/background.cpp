@@ -6,11 +6,15 @@
 
 #include <algorithm>
 #include <cmath>
+#include <utility>
 
 #include <fmt/core.h>
 
 namespace octafront::adapt {
 namespace {
+
+/// Lengths of more diagonals are no wish, and rounding would make nonsense of them.
+constexpr double kLongestOfDiagonal = 1e12;
 
 /// A size for each metric, that of the same density: MeshSizes finds places for sizes.
 std::shared_ptr<const SizeMesh> as_sizes(const MetricMesh& mesh) {
@@ -32,6 +36,39 @@ std::shared_ptr<const SizeMesh> as_sizes(const MetricMesh& mesh) {
   return std::make_shared<const SizeMesh>(std::move(sizes));
 }
 
+enum class Fault { kNone, kNotPositive, kOutOfRange };
+
+/// `diagonal`: of the mesh.
+Fault fault_of(const Metric& m, double diagonal) {
+  // Tensors of any magnitude are positive definite or not.
+  const double largest = std::max({m.xx, m.yy, m.zz});
+  if (!(largest > 0) || !is_metric((1 / largest) * m)) return Fault::kNotPositive;
+  if (!is_metric(m)) return Fault::kOutOfRange;
+  const auto values = eigen(m).value;
+  const double longest = kLongestOfDiagonal * diagonal;
+  return *std::min_element(values.begin(), values.end()) < 1 / (longest * longest) ? Fault::kOutOfRange : Fault::kNone;
+}
+
+/// Throws where some are, with the first of them.
+template <class IsSo>
+void refuse_those(std::span<const Metric> metrics, std::span<const Vec3> points, const std::string& what,
+                  const char* words, const IsSo& is_so) {
+  constexpr std::uint64_t kTold = 3;
+  std::uint64_t wrong = 0;
+  std::string places;
+  for (std::size_t v = 0; v < metrics.size(); ++v) {
+    if (!is_so(metrics[v]) || ++wrong > kTold) continue;
+    const Metric& m = metrics[v];
+    places += fmt::format("{}point {}", places.empty() ? "" : "; ", v);
+    if (v < points.size()) places += fmt::format(" ({:.6g}, {:.6g}, {:.6g})", points[v].x, points[v].y, points[v].z);
+    places += fmt::format(" has xx {:.6g} xy {:.6g} xz {:.6g} yy {:.6g} yz {:.6g} zz {:.6g}", m.xx, m.xy, m.xz, m.yy,
+                          m.yz, m.zz);
+  }
+  if (wrong > 0)
+    throw InputError(fmt::format("{}: {} of {} tensors {} {}: {}{}", what, wrong, metrics.size(),
+                                 wrong == 1 ? "is" : "are", words, places, wrong > kTold ? "; ..." : ""));
+}
+
 bool is_round(const Metric& m) {
   return m.xy == 0 && m.xz == 0 && m.yz == 0 && m.xx == m.yy && m.yy == m.zz;
 }
@@ -42,20 +79,12 @@ void require_metrics(std::span<const Metric> metrics, std::size_t count, std::sp
                      const std::string& what) {
   if (metrics.size() != count)
     throw InputError(fmt::format("{}: {} tensors, but the mesh has {} points", what, metrics.size(), count));
-  constexpr std::uint64_t kTold = 3;
-  std::uint64_t wrong = 0;
-  std::string places;
-  for (std::size_t v = 0; v < metrics.size(); ++v) {
-    if (is_metric(metrics[v]) || ++wrong > kTold) continue;
-    const Metric& m = metrics[v];
-    places += fmt::format("{}point {}", places.empty() ? "" : "; ", v);
-    if (v < points.size()) places += fmt::format(" ({:.6g}, {:.6g}, {:.6g})", points[v].x, points[v].y, points[v].z);
-    places += fmt::format(" has xx {:.6g} xy {:.6g} xz {:.6g} yy {:.6g} yz {:.6g} zz {:.6g}", m.xx, m.xy, m.xz, m.yy,
-                          m.yz, m.zz);
-  }
-  if (wrong > 0)
-    throw InputError(fmt::format("{}: {} of {} tensors {} not positive definite: {}{}", what, wrong, metrics.size(),
-                                 wrong == 1 ? "is" : "are", places, wrong > kTold ? "; ..." : ""));
+  Box3 box;
+  for (const Vec3 p : points) box.add(p);
+  const double diagonal = points.empty() ? HUGE_VAL : box.diagonal();
+  for (const auto& [fault, words] : {std::pair{Fault::kNotPositive, "not positive definite"},
+                                     std::pair{Fault::kOutOfRange, "out of range: lengths that no mesh has"}})
+    refuse_those(metrics, points, what, words, [&](const Metric& m) { return fault_of(m, diagonal) == fault; });
 }
 
 BackgroundMetric::BackgroundMetric(const MetricMesh& mesh)

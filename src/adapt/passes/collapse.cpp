@@ -101,7 +101,7 @@ class EdgeCollapser {
     return found;
   }
 
-  static bool may_go(const Vertex& v) { return !v.rim && !v.frozen && v.kind != Kind::kFixed; }
+  static bool may_go(const Vertex& v) { return !v.rim && !v.frozen && !v.held && v.kind != Kind::kFixed; }
 
   bool collapse(TetIndex t, VertexIndex a, VertexIndex b) {
     if (!piece_.ring(t, a, b, ring_)) return false;

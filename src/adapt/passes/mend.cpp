@@ -121,7 +121,7 @@ class Inserter {
       const Tet& c = piece_.tet(t);
       for (const VertexIndex v : c) {
         const Vertex& vertex = piece_.vertices[v];
-        const bool stays = vertex.kind != Kind::kInner || vertex.rim || vertex.frozen;
+        const bool stays = vertex.kind != Kind::kInner || vertex.rim || vertex.frozen || vertex.held;
         if (stays && !std::binary_search(rim_.begin(), rim_.end(), v)) return false;
       }
       for (const auto& [i, j] : kTetEdges) {

@@ -11,6 +11,7 @@
 
 #include <cstddef>
 #include <cstdint>
+#include <span>
 
 namespace octafront::adapt {
 
@@ -18,9 +19,14 @@ namespace octafront::adapt {
 struct Guide {
   const MetricField& metric;
   const Ground& ground;
-  double tolerance = 0;  ///< how far walls may stray from the smooth surface; input units
+  double tolerance = 0;  ///< how far walls may stray from the smooth surface, at least; input units
   const RunContext& context;
+  std::span<const std::uint8_t> kept = {};  ///< per part of walls: its triangles stay; empty: none do
 
+  std::span<const double> tolerances = {};  ///< the tolerance per part of walls; empty: `tolerance`
+
+  double tolerance_of(Wall wall) const { return tolerances.empty() ? tolerance : tolerances[(wall & ~kOuter) - 1]; }
+  bool keeps(Wall wall) const { return !kept.empty() && wall != 0 && kept[(wall & ~kOuter) - 1] != 0; }
   /// Sets metric and density of a vertex from its place; one that is on the way keeps its own.
   void ask(Vertex& v) const {
     if (!v.exact) return;

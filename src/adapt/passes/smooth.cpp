@@ -46,7 +46,7 @@ class VertexMover {
       at.active &= at.rim;
       if (!at.loose) continue;
       at.loose = at.rim;
-      if (wanted[v] == 0 || at.rim || at.frozen || at.kind == Kind::kFixed) continue;
+      if (wanted[v] == 0 || at.rim || at.frozen || at.held || at.kind == Kind::kFixed) continue;
       if (++steps_ % kCheckMoveEvery == 0) guide_.context.check();
       ++count.tried;
       count.done += move(v);
@@ -62,7 +62,7 @@ class VertexMover {
         if (++steps_ % kCheckMoveEvery == 0) guide_.context.check();
         const VertexIndex v = piece_.tet(t)[i];
         const Vertex& at = piece_.vertices[v];
-        if (at.rim || at.frozen || at.kind == Kind::kFixed) continue;
+        if (at.rim || at.frozen || at.held || at.kind == Kind::kFixed) continue;
         ++count.tried;
         count.done += move_by_trial(v);
       }
@@ -73,7 +73,8 @@ class VertexMover {
     PassCount count;
     for (VertexIndex v = 0; v < piece_.vertices.size(); ++v) {
       const Vertex& at = piece_.vertices[v];
-      if (!at.off || piece_.complex.tet_at[v] == kNone || at.rim || at.frozen || !(at.active || at.loose)) continue;
+      if (!at.off || piece_.complex.tet_at[v] == kNone || at.rim || at.frozen || at.held || !(at.active || at.loose))
+        continue;
       if (++steps_ % kCheckMoveEvery == 0) guide_.context.check();
       ++count.tried;
       count.done += settle(v);
@@ -416,9 +417,10 @@ bool keeps_walls_true(const Guide& guide, std::span<const TriangleCorners> befor
     return worst;
   };
   const Ground::Truth has = worst_of(after);
-  if (has.distance <= guide.tolerance && has.cosine >= kLeastCosineOfWall) return true;
+  const double tolerance = guide.tolerance_of(wall);
+  if (has.distance <= tolerance && has.cosine >= kLeastCosineOfWall) return true;
   const Ground::Truth had = worst_of(before);
-  return std::isfinite(has.distance) && has.distance <= std::max(guide.tolerance, had.distance) &&
+  return std::isfinite(has.distance) && has.distance <= std::max(tolerance, had.distance) &&
          has.cosine >= std::min(kLeastCosineOfWall, had.cosine);
 }
 

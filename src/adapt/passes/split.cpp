@@ -203,6 +203,7 @@ class Splitter {
     if (path && *path == Parts::kStays) return false;
     if (!piece_.ring(t, a, b, ring_)) return false;
     find_walls();
+    if (std::any_of(walls_.begin(), walls_.end(), [&](const WallAt& w) { return guide_.keeps(w.wall); })) return false;
     const Vec3 p = piece_.point(a), q = piece_.point(b), straight = p + part * (q - p);
     const Vec3 home = home_of(a, b, straight, path);
     Vertex made;

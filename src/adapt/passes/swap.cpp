@@ -114,7 +114,7 @@ class Swapper {
     const std::size_t n = ring_.ring.size(), i = wall_at_[0], j = wall_at_[1];
     const VertexIndex p = ring_.ring[i], q = ring_.ring[j];
     const Wall label = piece_.wall[piece_.complex.opposite(ring_.tets[i], ring_.ring[(i + 1) % n])];
-    if (are_frozen(p, q) || (piece_.vertices[p].rim && piece_.vertices[q].rim)) return;
+    if (guide_.keeps(label) || are_frozen(p, q) || (piece_.vertices[p].rim && piece_.vertices[q].rim)) return;
     const bool outer = !ring_.closed;
     if (outer != ((label & kOuter) != 0) || (outer && (i != 0 || j + 1 != n))) return;
     const Wall other = outer ? piece_.wall[piece_.complex.opposite(ring_.tets.back(), ring_.ring[j - 1])]

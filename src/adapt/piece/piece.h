@@ -35,6 +35,7 @@ struct Vertex {
   bool touched = true;  ///< of a piece: it was active when that was taken, or something around it changed since
   bool exact = true;    ///< the metric is that of the place, not one on the way to it
   bool frozen = false;  ///< asked to stay as it is, with all that is between vertices that are
+  bool held = false;    ///< asked to stay as it is, alone
   bool off = false;     ///< on a wall, beside the surface that was given: it is to go there
   /// For what mends: kStirred, something around it changed; kSettling, just before the cycle that is under way; kCalm,
   /// all that could be tried around it has been, in vain.

@@ -30,6 +30,9 @@ constexpr int kMostSteps = 20, kQuiet = 50;
 /// None more either once few vertices are on the way, one of so many, and a step brings less than a part of them there:
 /// the others are where walls keep elements from the metric.
 constexpr std::size_t kFewOnTheWay = 20, kPartOfStep = 10;
+/// Where after all steps more vertices are on the way than one of so many, no mesh comes to this metric: it changes
+/// faster than elements can follow, and what they are on the way to is as near as they get.
+constexpr std::size_t kManyOnTheWay = 4;
 /// A piece has the elements that are awake and layers around them, so many in all: what passes look at.
 constexpr int kLayersAwake = 3;
 /// Less than one change for so many elements is not worth another round.
@@ -56,6 +59,9 @@ constexpr double kGradationOfStrays = 0.5, kLeastChangeOfDensity = 1.02;
 constexpr double kShareOfBound = 0.85;
 /// Layers of elements around those that are mended, and how often they are looked for.
 constexpr int kLayersOfMending = 3, kMostRoundsOfMending = 6;
+/// Where more elements are poor than one of so many, no place is to blame but the metric, which changes faster than
+/// elements can follow: mending each of them would take long, and gain little.
+constexpr std::size_t kMostPoor = 4;
 /// Rounds once no piece has grown so far that it had to be divided anew: each place is inside a piece several times.
 constexpr int kLastRounds = 2 * kCellStages;
 
@@ -113,6 +119,7 @@ class Adapter {
     Counts sum;
     bool is_quiet = false;
     for (int round = 0, since_growth = 0; round < kMostRoundsOfAdapt && since_growth < kLastRounds; ++round) {
+      if (round == kMostSteps && steps_left_ * kManyOnTheWay > mesh_.vertices.size()) on_the_way_ = false;
       if (on_the_way_) step(round >= kMostSteps || is_quiet);
       const Counts c = this->round(cells_of_stage(round % kCellStages));
       sum += c;
@@ -142,6 +149,7 @@ class Adapter {
 
   /// What is still poor, each place by itself: what is so long that it was at the rim of all its pieces, too.
   void mend(Counts& sum) {
+    if (is_poor_everywhere()) return;
     mends_ = true;
     for (int k = 0; k < kMostRoundsOfMending; ++k) {
       const Cells places = poor_places(k > 0);
@@ -151,6 +159,15 @@ class Adapter {
       if (c.mend.done == 0 && !c.grown) break;
     }
     mends_ = false;
+  }
+
+  bool is_poor_everywhere() const {
+    const std::size_t poor = parallel_sum(mesh_.tets.size(), [&](std::size_t begin, std::size_t end) {
+      std::size_t count = 0;
+      for (std::size_t t = begin; t < end; ++t) count += worth_of(mesh_, mesh_.tets[t]) < 1;
+      return count;
+    });
+    return poor * kMostPoor > mesh_.tets.size() && !mesh_.isotropic;
   }
 
   /// A cell for each lot of poor elements and some layers around, numbered by their least vertices; other vertices are
@@ -467,9 +484,9 @@ void grade_from(Parts& parts, std::vector<VertexIndex> queue) {
 
 /// Asks for smaller elements at these triangles, whatever the metric wants: such that the longest edge of each is
 /// divided.
-void ask_for_smaller(Parts& parts, const std::vector<Triangle>& triangles) {
+void ask_for_smaller(Parts& parts, const std::vector<SmoothWalls::Stray>& strays) {
   std::vector<double> factor(parts.vertices.size(), 1);
-  for (const Triangle& t : triangles) {
+  for (const auto& [t, bound] : strays) {
     double longest = 0;
     for (std::size_t i = 0; i < 3; ++i) {
       const Vertex &a = parts.vertices[t[i]], &b = parts.vertices[t[(i + 1) % 3]];
@@ -489,36 +506,36 @@ void ask_for_smaller(Parts& parts, const std::vector<Triangle>& triangles) {
 
 /// Brings walls that stray too far nearer to the ground.
 void mend_walls(Parts& parts, const Ground& ground, const AdaptRules& rules, Adapter& adapter, Adapted& out,
-                const Stage& stage) {
-  if (rules.tolerance <= 0) return;
-  const SmoothWalls smooth(ground, rules.kept.empty() ? rules.frozen : rules.kept, rules.tolerance);
-  out.bound = rules.strict ? rules.tolerance : std::max(rules.tolerance, smooth.of_old().upper);
+                const WallBounds& bounds, const Stage& stage) {
+  if (rules.tolerance <= 0 || bounds.tolerance.empty()) return;
+  const SmoothWalls smooth(ground, bounds);
   // Walls that stay are frozen, and those are not looked at.
-  out.deviation = rules.keep_walls ? smooth.of_old() : smooth.of(parts, out.bound);
-  if (rules.keep_walls || out.deviation.upper <= out.bound) return;
+  out.deviations = rules.keep_walls ? smooth.of_old() : smooth.of(parts);
+  if (rules.keep_walls || excess_of(out.deviations) <= 1) return;
   const Parts first = parts;
   Parts best = parts;
-  Deviation nearest = out.deviation;
-  for (int k = 0, in_vain = 0; k < kMostMendings && in_vain < kMostInVain && nearest.upper > out.bound; ++k) {
+  std::vector<Deviation> nearest = out.deviations;
+  for (int k = 0, in_vain = 0; k < kMostMendings && in_vain < kMostInVain && excess_of(nearest) > 1; ++k) {
     stage.check();
-    std::vector<Triangle> strays = smooth.strays(parts, kShareOfBound * out.bound);
-    std::erase_if(strays, [&](const Triangle& t) {
-      const auto at = [&](std::size_t i) { return parts.vertices[t[i]].at; };
-      return longest_squared_edge(at(0), at(1), at(2)) < kLeastEdgeOfStray * kLeastEdgeOfStray * out.bound * out.bound;
+    std::vector<SmoothWalls::Stray> strays = smooth.strays(parts, kShareOfBound);
+    std::erase_if(strays, [&](const SmoothWalls::Stray& s) {
+      const auto at = [&](std::size_t i) { return parts.vertices[s.corners[i]].at; };
+      return longest_squared_edge(at(0), at(1), at(2)) < kLeastEdgeOfStray * kLeastEdgeOfStray * s.bound * s.bound;
     });
     if (strays.empty() || parts.tets.size() > kGrowthOfMending * first.tets.size() + kRoomOfPiece) break;
     stage.count("wall triangles that strayed", static_cast<double>(strays.size()));
     ask_for_smaller(parts, strays);
     adapter.run();
-    const Deviation now = smooth.of(parts, out.bound);
-    in_vain = now.upper < kLeastProgress * nearest.upper ? 0 : in_vain + 1;
-    if (now.upper < nearest.upper) nearest = now, best = parts;
+    const std::vector<Deviation> now = smooth.of(parts);
+    in_vain = excess_of(now) < kLeastProgress * excess_of(nearest) ? 0 : in_vain + 1;
+    if (excess_of(now) < excess_of(nearest)) nearest = now, best = parts;
   }
   // Smaller elements are no use where the ground itself has a step.
   const bool is_cheap = static_cast<double>(best.tets.size()) < kFewMore * static_cast<double>(first.tets.size());
   const double gain = is_cheap ? kLeastProgress : kLeastGainOfMending;
-  const bool helped = nearest.upper <= out.bound || nearest.upper < gain * out.deviation.upper;
-  if (helped) out.deviation = nearest;
+  const double reached = excess_of(nearest);
+  const bool helped = reached <= 1 || reached < gain * excess_of(out.deviations);
+  if (helped) out.deviations = std::move(nearest);
   parts = helped ? std::move(best) : first;
 }
 
@@ -535,22 +552,45 @@ GivenFit given_fit(const Ground& ground, std::span<const Vertex> vertices) {
     if (fit.own_walls++ == 0) fit.own_wall_at = centroid(walls.points[a], walls.points[b], walls.points[c]);
   }
   for (const Vertex& v : vertices)
-    if (v.off && !v.frozen && fit.held++ == 0) fit.held_at = v.at;
+    if (v.off && !v.frozen && !v.held && fit.held++ == 0) fit.held_at = v.at;
   return fit;
 }
 
 namespace {
 
+/// Per part of walls, by its sets.
+WallBounds bounds_of(const TakenApart& taken, const AdaptRules& rules) {
+  WallBounds bounds{{}, {}, taken.kept, rules.kept.empty() ? rules.frozen : rules.kept};
+  for (const Labels::Label& wall : taken.labels.walls) {
+    double tolerance = rules.tolerance;
+    bool strict = rules.strict, is_own = false;
+    for (const ToleranceOfSet& own : rules.tolerances) {
+      if (std::find(wall.begin() + 1, wall.end(), own.set) == wall.end()) continue;
+      if (is_own && own.tolerance >= tolerance) continue;
+      tolerance = own.tolerance, strict = own.strict, is_own = true;
+    }
+    bounds.tolerance.push_back(tolerance);
+    bounds.strict.push_back(strict);
+  }
+  return bounds;
+}
+
 /// Where a bound is asked for, edges at which the ground bends too much for the sizes wanted are lines, too.
 TakenApart taken_apart(const TetMesh& mesh, const MetricField& metric, const AdaptRules& rules) {
   TakenApart taken = take_apart(mesh, rules.feature_angle);
-  if (!rules.strict || rules.tolerance <= 0) return taken;
+  const bool any_strict = rules.strict || std::any_of(rules.tolerances.begin(), rules.tolerances.end(),
+                                                      [](const ToleranceOfSet& t) { return t.strict; });
+  if (!any_strict || rules.tolerance <= 0) return taken;
+  const WallBounds bounds = bounds_of(taken, rules);
+  std::vector<double> cut_off;
+  for (std::size_t p = 0; p < bounds.tolerance.size(); ++p)
+    cut_off.push_back(bounds.strict[p] ? kShareOfKink * bounds.tolerance[p] : HUGE_VAL);
   const Ground ground(std::move(taken.walls), rules.given);
   const auto wanted = [&](Vec3 p, Vec3 direction) {
     std::uint32_t hint = 0;
     return 1 / std::sqrt(metric.at(p, hint).squared(direction));
   };
-  return take_apart(mesh, rules.feature_angle, ground.kinks(wanted, kShareOfKink * rules.tolerance));
+  return take_apart(mesh, rules.feature_angle, ground.kinks(wanted, cut_off));
 }
 
 }  // namespace
@@ -558,8 +598,12 @@ TakenApart taken_apart(const TetMesh& mesh, const MetricField& metric, const Ada
 Adapted adapt_mesh(const TetMesh& mesh, const MetricField& metric, const AdaptRules& rules, const Stage& stage) {
   TakenApart taken = taken_apart(mesh, metric, rules);
   if (!rules.frozen.empty()) freeze(taken.parts, rules.frozen);
+  hold_sets(taken, mesh, rules.kept_sets);
   const Ground ground(std::move(taken.walls), rules.given);
-  const Guide guide{metric, ground, rules.tolerance, stage.context()};
+  const WallBounds bounds = bounds_of(taken, rules);
+  const auto least = std::min_element(bounds.tolerance.begin(), bounds.tolerance.end());
+  const Guide guide{metric,          ground,     least == bounds.tolerance.end() ? rules.tolerance : *least,
+                    stage.context(), taken.kept, bounds.tolerance};
   taken.parts.isotropic = metric.is_isotropic();
   parallel_for(taken.parts.vertices.size(), [&](std::size_t v) { guide.ask(taken.parts.vertices[v]); });
   if (rules.keep_walls)
@@ -568,7 +612,7 @@ Adapted adapt_mesh(const TetMesh& mesh, const MetricField& metric, const AdaptRu
   Adapter adapter(taken.parts, guide, rules, stage);
   adapter.run();
   Adapted out;
-  mend_walls(taken.parts, ground, rules, adapter, out, stage);
+  mend_walls(taken.parts, ground, rules, adapter, out, bounds, stage);
   out.given = given_fit(ground, taken.parts.vertices);
   out.mesh = put_together(taken.parts, taken.labels, mesh, out.old_of_new);
   return out;

@@ -18,6 +18,13 @@
 
 namespace octafront::adapt {
 
+/// How far the faces of a set of the mesh, by its number, may stray.
+struct ToleranceOfSet {
+  std::uint32_t set = 0;
+  double tolerance = 0;  ///< > 0; input units
+  bool strict = false;   ///< as of AdaptRules
+};
+
 struct AdaptRules {
   double feature_angle = 40;  ///< degrees
   double tolerance = 0;       ///< how far walls may stray from the smooth surface of the input; input units
@@ -26,12 +33,14 @@ struct AdaptRules {
   bool walls_ahead = true;  ///< as of take_step()
   /// Where walls lie instead of on their own smooth surface, as far as it is near them; null: nowhere.
   const GivenSurface* given = nullptr;
-  bool keep_walls = false;                  ///< vertices on walls, and all edges between them, stay as they are
+  std::span<const ToleranceOfSet> tolerances = {};  ///< of faces in several the least counts, in none that of all
+  bool keep_walls = false;                          ///< vertices on walls, and all edges between them, stay as they are
   std::span<const std::uint8_t> kept = {};  ///< per vertex: it stays, and so does what lies between such; empty: none
   /// Per vertex: it stays, and so does what lies between vertices that do; elements with none but such vertices are not
   /// in the result. Empty: all may change. The faces of the mesh that are no walls of it are where it was cut out of
   /// another: their vertices must be frozen.
   std::span<const std::uint8_t> frozen = {};
+  std::span<const std::uint32_t> kept_sets = {};  ///< sets of the mesh, by number, whose members stay: hold_sets()
 };
 
 /// How a mesh fits a metric, by the measures of the Unstructured Grid Adaptation Working Group.
@@ -59,8 +68,9 @@ GivenFit given_fit(const Ground& ground, std::span<const Vertex> vertices);
 struct Adapted {
   TetMesh mesh;
   std::vector<VertexIndex> old_of_new;  ///< per vertex the one of the input that it is; kNone: new
-  Deviation deviation;                  ///< of the walls that could change from the smooth surface of the input
-  double bound = 0;                     ///< what was to be kept: the tolerance, or the deviation of walls as they came
+  /// Of the walls that could change from the smooth surface of the input: those of one tolerance together, the ones
+  /// that come nearest to their bound, or beyond it most, first.
+  std::vector<Deviation> deviations;
 
   GivenFit given;
 };

@@ -78,8 +78,9 @@ std::size_t balance_once(Parts& parts, const Guide& guide, double feature_angle)
   const WallsNow now = walls_now(parts, feature_angle);
   std::vector<std::uint8_t> may_move;
   for (const VertexIndex v : now.vertex)
-    may_move.push_back(parts.vertices[v].kind == Kind::kSurface && !parts.vertices[v].frozen);
-  const std::vector<Vec3> steps = steps_to_balance(now.walls, may_move, guide.ground, guide.tolerance);
+    may_move.push_back(parts.vertices[v].kind == Kind::kSurface && !parts.vertices[v].frozen &&
+                       !parts.vertices[v].held);
+  const std::vector<Vec3> steps = steps_to_balance(now.walls, may_move, guide.ground, guide.tolerances);
   std::vector<Vertex> moved = parts.vertices;
   std::vector<std::uint8_t> moves(moved.size(), 0);
   for (std::size_t p = 0; p < steps.size(); ++p) {
@@ -100,7 +101,7 @@ std::size_t balance_once(Parts& parts, const Guide& guide, double feature_angle)
 
 std::size_t balance_walls(Parts& parts, const Guide& guide, double feature_angle) {
   if (guide.ground.given() || guide.tolerance <= 0) return 0;
-  const auto may_move = [](const Vertex& v) { return v.kind == Kind::kSurface && !v.frozen; };
+  const auto may_move = [](const Vertex& v) { return v.kind == Kind::kSurface && !v.frozen && !v.held; };
   if (std::none_of(parts.vertices.begin(), parts.vertices.end(), may_move)) return 0;
   std::size_t moved = 0;
   for (int k = 0; k < kMostBalancings; ++k) moved = std::max(moved, balance_once(parts, guide, feature_angle));

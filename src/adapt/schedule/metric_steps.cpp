@@ -73,16 +73,20 @@ class HighArcs {
 
   void collect() {
     FlatSet<Edge> seen;
+    if (!guide_.kept.empty()) collect(seen, true);  // edges that they share with others stay, too
+    collect(seen, false);
+  }
+  void collect(FlatSet<Edge>& seen, bool of_kept) {
     for (TetIndex t = 0; t < mesh_.tets.size(); ++t)
       for (int i = 0; i < 4; ++i) {
         const Wall w = mesh_.wall[t][static_cast<std::size_t>(i)];
-        if (w == 0) continue;
+        if (w == 0 || guide_.keeps(w) != of_kept) continue;
         const Triangle f = face_of(mesh_.tets[t], i);
         const Vec3 n = double_area_normal(at(f[0]), at(f[1]), at(f[2]));
         for (std::size_t k = 0; k < 3; ++k) {
           const Edge ends = sorted_edge(f[k], f[(k + 1) % 3]);
           const bool may_change = !mesh_.vertices[ends[0]].frozen || !mesh_.vertices[ends[1]].frozen;
-          if (may_change && seen.insert(ends)) edges_.push_back({ends, w, normalized(n)});
+          if (may_change && seen.insert(ends) && !of_kept) edges_.push_back({ends, w, normalized(n)});
         }
       }
   }

@@ -8,6 +8,8 @@
 
 #include <algorithm>
 #include <cmath>
+#include <map>
+#include <utility>
 
 namespace octafront::adapt {
 namespace {
@@ -64,44 +66,90 @@ TriangleCorners corners_on(const SurfaceMesh& surface, const Triangle& t) {
 
 }  // namespace
 
-SmoothWalls::SmoothWalls(const Ground& ground, std::span<const std::uint8_t> frozen, double tolerance)
-    : tolerance_(kPartOfTolerance * tolerance), tree_(SurfaceMesh{}) {
+double excess_of(std::span<const Deviation> deviations) {
+  return worst_of(deviations).excess();
+}
+
+Deviation worst_of(std::span<const Deviation> deviations) {
+  Deviation worst;
+  for (const Deviation& d : deviations)
+    if (worst.bound == 0 || d.excess() > worst.excess()) worst = d;
+  return worst;
+}
+
+bool SmoothWalls::stays(const Triangle& corners, std::uint32_t part) const {
+  return all_frozen(corners, bounds_.frozen) || (!bounds_.kept.empty() && bounds_.kept[part] != 0);
+}
+
+SmoothWalls::SmoothWalls(const Ground& ground, const WallBounds& bounds) : bounds_(bounds), tree_(SurfaceMesh{}) {
+  make_groups();
   const SurfaceMesh& walls = ground.walls().surface;
   std::vector<std::uint32_t> free;
   PointsInUse used(walls.points.size());
   std::vector<VertexIndex> vertex;
+  SurfaceMesh old, all;
   for (std::uint32_t t = 0; t < walls.triangles.size(); ++t) {
     Triangle corners = walls.triangles[t];
-    if (all_frozen(corners, frozen)) continue;
+    if (stays(corners, walls.patch[t])) continue;
     if (!ground.is_covered(t)) free.push_back(t);
-    for (VertexIndex& v : corners) v = used.add(v, old_, vertex, [&](VertexIndex u) { return walls.points[u]; });
-    old_.triangles.push_back(corners);
+    for (VertexIndex& v : corners) v = used.add(v, old, vertex, [&](VertexIndex u) { return walls.points[u]; });
+    old.triangles.push_back(corners);
+    old.patch.push_back(walls.patch[t]);
   }
   std::vector<std::vector<TriangleCorners>> made(free.size());
-  parallel_for(free.size(), [&](std::size_t k) { made[k] = ground.divided(free[k], tolerance_); });
-  for (const auto& list : made) add_triangles(list, smooth_);
-  SurfaceMesh all;
-  if (ground.given()) add_given(ground, frozen, all);
-  tree_ = TriangleTree(ground.given() ? all : smooth_);
+  parallel_for(free.size(), [&](std::size_t k) {
+    made[k] = ground.divided(free[k], groups_[group_[walls.patch[free[k]]]].tolerance);
+  });
+  for (std::size_t k = 0; k < free.size(); ++k) {
+    add_triangles(made[k], groups_[group_[walls.patch[free[k]]]].smooth);
+    add_triangles(made[k], all);
+  }
+  if (ground.given()) add_given(ground, all);
+  tree_ = TriangleTree(all);
+  std::vector<SurfaceMesh> old_of_groups = divided_in_groups(old);
+  for (std::size_t g = 0; g < groups_.size(); ++g) {
+    groups_[g].old = std::move(old_of_groups[g]);
+    const auto p = static_cast<std::size_t>(std::find(group_.begin(), group_.end(), g) - group_.begin());
+    groups_[g].bound = bounds_.tolerance[p];
+    if (bounds_.strict[p]) continue;
+    const Deviation had = distance_of(groups_[g], groups_[g].old, TriangleTree(groups_[g].old), kResolution);
+    groups_[g].bound = std::max(groups_[g].bound, had.upper);
+  }
+}
+
+/// Parts of the same tolerance, strict or not, in the order of their first parts.
+void SmoothWalls::make_groups() {
+  std::map<std::pair<double, std::uint8_t>, std::uint32_t> number;
+  for (std::size_t p = 0; p < bounds_.tolerance.size(); ++p) {
+    const std::pair key{bounds_.tolerance[p], bounds_.strict[p]};
+    const auto [at, is_new] = number.try_emplace(key, static_cast<std::uint32_t>(groups_.size()));
+    if (is_new) groups_.emplace_back().tolerance = kPartOfTolerance * key.first;
+    group_.push_back(at->second);
+  }
 }
 
 /// Of what was given, that is looked for among the new walls whose nearest old ones are covered and may change.
-void SmoothWalls::add_given(const Ground& ground, std::span<const std::uint8_t> frozen, SurfaceMesh& all) {
+void SmoothWalls::add_given(const Ground& ground, SurfaceMesh& all) {
   const SurfaceMesh& walls = ground.walls().surface;
   const auto stands = [&](Vec3 p) {
     const std::uint32_t t = ground.wall_at(p);
-    return t != kNone && ground.is_covered(t) && !all_frozen(walls.triangles[t], frozen);
+    return t != kNone && ground.is_covered(t) && !stays(walls.triangles[t], walls.patch[t]);
   };
+  double least = HUGE_VAL;
+  for (const Group& group : groups_) least = std::min(least, group.tolerance);
   std::vector<Ground::GivenPieces> made(ground.given()->size());
-  parallel_for(made.size(), [&](std::size_t t) {
-    made[t] = ground.divided_given(static_cast<std::uint32_t>(t), tolerance_, stands);
-  });
-  for (const Ground::GivenPieces& pieces : made) add_triangles(pieces.standing, smooth_);
-  all = smooth_;
+  parallel_for(made.size(),
+               [&](std::size_t t) { made[t] = ground.divided_given(static_cast<std::uint32_t>(t), least, stands); });
+  for (const Ground::GivenPieces& pieces : made)
+    for (const TriangleCorners& t : pieces.standing) {
+      const std::uint32_t wall = ground.wall_at(centroid(t[0], t[1], t[2]));
+      add_triangles({t}, groups_[group_[walls.patch[wall]]].smooth);
+      add_triangles({t}, all);
+    }
   for (const Ground::GivenPieces& pieces : made) add_triangles(pieces.others, all);
 }
 
-SmoothWalls::WallsOfParts SmoothWalls::walls_of(const Parts& mesh) {
+SmoothWalls::WallsOfParts SmoothWalls::walls_of(const Parts& mesh) const {
   WallsOfParts walls;
   PointsInUse used(mesh.vertices.size());
   FlatSet<Triangle> seen;
@@ -109,56 +157,96 @@ SmoothWalls::WallsOfParts SmoothWalls::walls_of(const Parts& mesh) {
     for (int i = 0; i < 4; ++i) {
       const Wall w = mesh.wall[t][static_cast<std::size_t>(i)];
       if (w == 0) continue;
+      const std::uint32_t part = (w & ~kOuter) - 1;
       Triangle f = face_of(mesh.tets[t], i);
       if (std::all_of(f.begin(), f.end(), [&](VertexIndex v) { return mesh.vertices[v].frozen; })) continue;
+      if (!bounds_.kept.empty() && bounds_.kept[part]) continue;
       if ((w & kOuter) == 0 && !seen.insert(face_key(f))) continue;
       for (VertexIndex& v : f)
         v = used.add(v, walls.surface, walls.vertex, [&](VertexIndex u) { return mesh.vertices[u].at; });
       walls.surface.triangles.push_back(f);
+      walls.surface.patch.push_back(part);
     }
   return walls;
 }
 
-Deviation SmoothWalls::of(const SurfaceMesh& walls, double bound) const {
-  const Deviation known = distance_of(walls, kResolution);
-  return known.lower <= bound && bound < known.upper ? distance_of(walls, kFineResolution) : known;
+std::vector<SurfaceMesh> SmoothWalls::divided_in_groups(const SurfaceMesh& walls) const {
+  if (groups_.size() == 1) return {walls};
+  std::vector<SurfaceMesh> parts(groups_.size());
+  for (std::uint32_t g = 0; g < parts.size(); ++g) {
+    PointsInUse used(walls.points.size());
+    std::vector<VertexIndex> vertex;
+    for (std::size_t t = 0; t < walls.triangles.size(); ++t) {
+      if (group_[walls.patch[t]] != g) continue;
+      Triangle corners = walls.triangles[t];
+      for (VertexIndex& v : corners) v = used.add(v, parts[g], vertex, [&](VertexIndex u) { return walls.points[u]; });
+      parts[g].triangles.push_back(corners);
+    }
+  }
+  return parts;
 }
 
-Deviation SmoothWalls::distance_of(const SurfaceMesh& walls, double resolution) const {
-  if (walls.triangles.empty() && smooth_.triangles.empty()) return {};
-  const HausdorffBounds there = one_sided_hausdorff(walls, tree_, resolution * tolerance_);
-  const HausdorffBounds back = one_sided_hausdorff(smooth_, TriangleTree(walls), resolution * tolerance_);
+std::vector<Deviation> SmoothWalls::of_old() const {
+  std::vector<Deviation> all;
+  for (const Group& group : groups_) all.push_back(distance_of(group, group.old, TriangleTree(group.old), kResolution));
+  return all;
+}
+
+std::vector<Deviation> SmoothWalls::of(const SurfaceMesh& walls) const {
+  const TriangleTree tree(walls);
+  const std::vector<SurfaceMesh> parts = divided_in_groups(walls);
+  std::vector<Deviation> all;
+  for (std::size_t g = 0; g < groups_.size(); ++g) {
+    const double bound = groups_[g].bound;
+    Deviation known = distance_of(groups_[g], parts[g], tree, kResolution);
+    if (known.lower <= bound && bound < known.upper) known = distance_of(groups_[g], parts[g], tree, kFineResolution);
+    all.push_back(known);
+  }
+  const auto farther = [](const Deviation& a, const Deviation& b) { return a.excess() > b.excess(); };
+  std::stable_sort(all.begin(), all.end(), farther);
+  return all;
+}
+
+/// `tree`: of all new walls.
+Deviation SmoothWalls::distance_of(const Group& group, const SurfaceMesh& walls, const TriangleTree& tree,
+                                   double resolution) const {
+  if (walls.triangles.empty() && group.smooth.triangles.empty()) return {0, 0, {}, group.bound};
+  const HausdorffBounds there = one_sided_hausdorff(walls, tree_, resolution * group.tolerance);
+  const HausdorffBounds back = one_sided_hausdorff(group.smooth, tree, resolution * group.tolerance);
   const HausdorffBounds& farther = there.lower >= back.lower ? there : back;
-  return {farther.lower, std::max(there.upper, back.upper), farther.place};
+  return {farther.lower, std::max(there.upper, back.upper), farther.place, group.bound};
 }
 
-std::vector<Triangle> SmoothWalls::strays(const Parts& mesh, double bound) const {
+std::vector<SmoothWalls::Stray> SmoothWalls::strays(const Parts& mesh, double share) const {
   const WallsOfParts walls = walls_of(mesh);
-  std::vector<Triangle> found = strays(walls.surface, bound);
-  for (Triangle& t : found)
-    for (VertexIndex& v : t) v = walls.vertex[v];
+  std::vector<Stray> found = strays(walls.surface, share);
+  for (Stray& s : found)
+    for (VertexIndex& v : s.corners) v = walls.vertex[v];
   return found;
 }
 
-std::vector<Triangle> SmoothWalls::strays(const SurfaceMesh& surface, double bound) const {
+std::vector<SmoothWalls::Stray> SmoothWalls::strays(const SurfaceMesh& surface, double share) const {
   const TriangleTree tree(surface);
+  const auto bound_of = [&](std::size_t t) { return groups_[group_[surface.patch[t]]].bound; };
   std::vector<std::uint8_t> far(surface.triangles.size(), 0);
   parallel_for(far.size(), [&](std::size_t t) {
     visit_places(corners_on(surface, surface.triangles[t]), [&](Vec3 p) {
-      if (!far[t]) far[t] = !tree_.is_within(p, bound);
+      if (!far[t]) far[t] = !tree_.is_within(p, share * bound_of(t));
     });
   });
-  std::vector<std::uint32_t> nearest(smooth_.triangles.size(), kNone);
-  parallel_for(nearest.size(), [&](std::size_t t) {
-    visit_places(corners_on(smooth_, smooth_.triangles[t]), [&](Vec3 p) {
-      if (nearest[t] == kNone && !tree.is_within(p, bound)) nearest[t] = tree.nearest(p).triangle;
+  for (const Group& group : groups_) {
+    std::vector<std::uint32_t> nearest(group.smooth.triangles.size(), kNone);
+    parallel_for(nearest.size(), [&](std::size_t t) {
+      visit_places(corners_on(group.smooth, group.smooth.triangles[t]), [&](Vec3 p) {
+        if (nearest[t] == kNone && !tree.is_within(p, share * group.bound)) nearest[t] = tree.nearest(p).triangle;
+      });
     });
-  });
-  for (const std::uint32_t t : nearest)
-    if (t != kNone) far[t] = 1;
-  std::vector<Triangle> found;
+    for (const std::uint32_t t : nearest)
+      if (t != kNone) far[t] = 1;
+  }
+  std::vector<Stray> found;
   for (std::size_t t = 0; t < far.size(); ++t)
-    if (far[t]) found.push_back(surface.triangles[t]);
+    if (far[t]) found.push_back({surface.triangles[t], bound_of(t)});
   return found;
 }
 

@@ -9,6 +9,7 @@
 #include "adapt/piece/piece.h"
 #include "base/geometry/triangle_tree.h"
 
+#include <cmath>
 #include <cstdint>
 #include <span>
 #include <vector>
@@ -19,41 +20,74 @@ namespace octafront::adapt {
 /// upper; input units.
 struct Deviation {
   double lower = 0, upper = 0;
-  Vec3 place;  ///< `lower` away from the other surface
+  Vec3 place;        ///< `lower` away from the other surface
+  double bound = 0;  ///< what is to be kept
+
+  /// Beyond 1 the bound is not kept.
+  double excess() const { return bound > 0 ? upper / bound : upper > 0 ? HUGE_VAL : 0; }
+};
+/// The greatest excess; 0 if there are none.
+double excess_of(std::span<const Deviation> deviations);
+/// The deviation of the greatest excess; nothing if there are none.
+Deviation worst_of(std::span<const Deviation> deviations);
+
+/// How far walls may stray, and which stay.
+struct WallBounds {
+  std::vector<double> tolerance;         ///< per part of walls; > 0; input units
+  std::vector<std::uint8_t> strict;      ///< per part: walls that strayed farther when they came are no excuse
+  std::span<const std::uint8_t> kept;    ///< per part: they stay, and are not looked at; empty: none
+  std::span<const std::uint8_t> frozen;  ///< as of AdaptRules: walls between frozen vertices are not looked at
 };
 
 /// The surface that the walls that may change stand for, smooth or given, as triangles that are far nearer to it than
-/// `tolerance`. Const and safe on any number of threads.
+/// the tolerance. Walls of one tolerance are a group, which is measured by itself. Const and safe on any number of
+/// threads.
 class SmoothWalls {
  public:
-  /// `frozen`: as of AdaptRules; walls between frozen vertices are not looked at. Requires tolerance > 0.
-  SmoothWalls(const Ground& ground, std::span<const std::uint8_t> frozen, double tolerance);
+  SmoothWalls(const Ground& ground, const WallBounds& bounds);
 
+  /// Of the walls of a mesh made of those that came, per group, more exactly where it is not clear whether they keep
+  /// the bound. They include what the triangles here differ from the smooth surface.
+  std::vector<Deviation> of(const Parts& mesh) const { return of(walls_of(mesh).surface); }
   /// Of the walls that came.
-  Deviation of_old() const { return distance_of(old_, kResolution); }
-  /// Of the walls of a mesh made of them, more exactly where it is not clear whether they keep the bound. They include
-  /// what the triangles here differ from the smooth surface.
-  Deviation of(const Parts& mesh, double bound) const { return of(walls_of(mesh).surface, bound); }
-  Deviation of(const SurfaceMesh& walls, double bound) const;
-  /// The wall triangles with places farther than `bound` from here, and those that are nearest to places here that are
-  /// farther than it from any.
-  std::vector<Triangle> strays(const Parts& mesh, double bound) const;
-  std::vector<Triangle> strays(const SurfaceMesh& walls, double bound) const;
+  std::vector<Deviation> of_old() const;
+  /// `walls.patch`: the parts.
+  std::vector<Deviation> of(const SurfaceMesh& walls) const;
+
+  /// A triangle with places farther from here than a share of the bound of its group, or that is nearest to a place
+  /// here that is farther than it from any.
+  struct Stray {
+    Triangle corners;
+    double bound;  ///< of its group
+  };
+  std::vector<Stray> strays(const Parts& mesh, double share) const;
+  std::vector<Stray> strays(const SurfaceMesh& walls, double share) const;
 
  private:
   /// How well distances are known, in parts of tolerance_: at first, and where that decides.
   static constexpr double kResolution = 1, kFineResolution = 0.2;
+  struct Group {
+    double tolerance = 0;  ///< by which the smooth surface is divided, and distances known
+    double bound = 0;
+    SurfaceMesh old, smooth;
+  };
   struct WallsOfParts {
     SurfaceMesh surface;  ///< without unused points
     std::vector<VertexIndex> vertex;
   };
-  static WallsOfParts walls_of(const Parts& mesh);
-  void add_given(const Ground& ground, std::span<const std::uint8_t> frozen, SurfaceMesh& all);
-  Deviation distance_of(const SurfaceMesh& walls, double resolution) const;
+  WallsOfParts walls_of(const Parts& mesh) const;
+  bool stays(const Triangle& corners, std::uint32_t part) const;
+  void make_groups();
+  void add_given(const Ground& ground, SurfaceMesh& all);
+  Deviation distance_of(const Group& group, const SurfaceMesh& walls, const TriangleTree& tree,
+                        double resolution) const;
+  /// The triangles of each group; those alone have points.
+  std::vector<SurfaceMesh> divided_in_groups(const SurfaceMesh& walls) const;
 
-  double tolerance_;
-  SurfaceMesh old_, smooth_;
-  TriangleTree tree_;  ///< of smooth_, and of what was given and stands for no wall that may change
+  WallBounds bounds_;
+  std::vector<std::uint32_t> group_;  ///< per part
+  std::vector<Group> groups_;
+  TriangleTree tree_;  ///< of all that is smooth, and of what was given and stands for no wall that may change
 };
 
 }  // namespace octafront::adapt

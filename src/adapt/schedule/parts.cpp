@@ -181,11 +181,55 @@ TakenApart take_apart(const TetMesh& mesh, double feature_angle, std::span<const
   return TakerApart(mesh, feature_angle, kinks).run();
 }
 
+namespace {
+
+/// Lines that stay must not be divided; what they are called is known by their edges then.
+void keep_line(TakenApart& taken, const Edge& edge) {
+  std::vector<Parts::Line>& lines = taken.parts.lines;
+  const auto line = std::lower_bound(lines.begin(), lines.end(), edge,
+                                     [](const Parts::Line& l, const Edge& e) { return l.edge < e; });
+  if (line == lines.end() || line->edge != edge || line->path == Parts::kStays) return;
+  taken.labels.staying[edge] = taken.labels.paths[line->path];
+  line->path = Parts::kStays;
+}
+
+}  // namespace
+
+void hold_sets(TakenApart& taken, const TetMesh& mesh, std::span<const std::uint32_t> sets) {
+  if (sets.empty()) return;
+  std::vector<Vertex>& vertices = taken.parts.vertices;
+  const auto hold = [&](const auto& item) {
+    for (const VertexIndex v : item) vertices[v].held = true;
+  };
+  const std::size_t outer = mesh.boundary.size();
+  for (const std::uint32_t s : sets)
+    for (const std::uint32_t m : mesh.sets[s].members) switch (mesh.sets[s].kind) {
+        case NamedSet::Kind::kNodes:
+          vertices[m].held = true;
+          break;
+        case NamedSet::Kind::kEdges:
+          hold(mesh.curve_edges[m]);
+          keep_line(taken, sorted_edge(mesh.curve_edges[m][0], mesh.curve_edges[m][1]));
+          break;
+        case NamedSet::Kind::kFaces:
+          hold(m < outer ? mesh.boundary[m] : mesh.interfaces[m - outer]);
+          break;
+        case NamedSet::Kind::kElements:
+          for (const VertexIndex v : mesh.tets[m]) vertices[v].frozen = true;
+      }
+  const auto is_kept = [&](const Labels::Label& wall) {
+    return std::any_of(wall.begin() + 1, wall.end(),
+                       [&](std::uint32_t set) { return std::find(sets.begin(), sets.end(), set) != sets.end(); });
+  };
+  for (const Labels::Label& wall : taken.labels.walls) taken.kept.push_back(is_kept(wall));
+}
+
 TetMesh put_together(const Parts& parts, const Labels& labels, const TetMesh& before,
                      std::vector<VertexIndex>& old_of_new) {
   TetMesh mesh;
   mesh.region_names = before.region_names, mesh.region_labels = before.region_labels;
   mesh.patch_names = before.patch_names, mesh.curve_names = before.curve_names;
+  mesh.patch_labels = before.patch_labels, mesh.curve_labels = before.curve_labels;
   mesh.sets = before.sets;
   for (NamedSet& s : mesh.sets) s.members.clear();
   // Vertices: those that were there in their order, then new ones.

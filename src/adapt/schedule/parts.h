@@ -28,6 +28,7 @@ struct TakenApart {
   Parts parts;  ///< vertices without metrics
   Walls walls;
   Labels labels;
+  std::vector<std::uint8_t> kept;  ///< per part of walls: its triangles stay; empty: none do
 };
 
 /// Requires a valid linear mesh. Lines are where walls bend by `feature_angle` (degrees), end, or meet others, the
@@ -35,6 +36,10 @@ struct TakenApart {
 /// others of walls are `off`. Faces of one tet that the boundary does not list are no walls: the mesh was cut out of
 /// another there.
 TakenApart take_apart(const TetMesh& mesh, double feature_angle, std::span<const Edge> kinks = {});
+
+/// Holds what sets of the mesh, by their numbers, have: nodes; edges of lines, and faces, with their vertices; elements
+/// with all that is between their vertices.
+void hold_sets(TakenApart& taken, const TetMesh& mesh, std::span<const std::uint32_t> sets);
 
 /// The mesh again, with the names of `before`: vertices that were there in their order, new ones behind. `old_of_new`
 /// gets the number in `before` of each vertex; kNone: new.

@@ -7,6 +7,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <utility>
 
 namespace octafront::adapt {
 namespace {
@@ -26,34 +27,67 @@ std::vector<Triangle> rim_faces(const TetMesh& mesh, std::span<const std::uint8_
   return faces;
 }
 
-}  // namespace
+/// The means of logarithms that are added at vertices; where none was it is 0.
+class MeanLogs {
+ public:
+  explicit MeanLogs(std::size_t vertices) : sum_(vertices, Metric{0, 0, 0, 0, 0, 0}), count_(vertices, 0) {}
+  void add(VertexIndex v, const Metric& log) { sum_[v] = sum_[v] + log, count_[v] += 1; }
+  std::vector<Metric> means() && {
+    for (VertexIndex v = 0; v < sum_.size(); ++v)
+      if (count_[v] > 0) sum_[v] = (1 / count_[v]) * sum_[v];
+    return std::move(sum_);
+  }
 
-RimMetric::RimMetric(const TetMesh& mesh, std::span<const std::uint8_t> frozen, const MetricField& wanted)
-    : wanted_(wanted), tree_(mesh.points, rim_faces(mesh, frozen)) {
-  const std::vector<Triangle> faces = rim_faces(mesh, frozen);
-  const std::vector<Metric> logs = logs_at(mesh, faces);
-  for (const Triangle& f : faces) faces_.push_back({logs[f[0]], logs[f[1]], logs[f[2]]});
-}
+ private:
+  std::vector<Metric> sum_;
+  std::vector<double> count_;
+};
 
-std::vector<Metric> RimMetric::logs_at(const TetMesh& mesh, std::span<const Triangle> faces) const {
+/// By the elements around.
+std::vector<Metric> logs_of_tets(const TetMesh& mesh, std::span<const Triangle> faces, bool isotropic) {
   std::vector<std::uint8_t> asked(mesh.points.size(), 0);
   for (const Triangle& f : faces)
     for (const VertexIndex v : f) asked[v] = 1;
-  std::vector<Metric> sum(mesh.points.size(), Metric{0, 0, 0, 0, 0, 0});
-  std::vector<double> count(mesh.points.size(), 0);
+  MeanLogs logs(mesh.points.size());
   for (const Tet& t : mesh.tets) {
     if (std::none_of(t.begin(), t.end(), [&](VertexIndex v) { return asked[v] != 0; })) continue;
     const Metric implied = implied_metric(mesh.points[t[0]], mesh.points[t[1]], mesh.points[t[2]], mesh.points[t[3]]);
     // What is flat to rounding says nothing.
     const double density = density_of(implied);
     if (!(density > 0) || !std::isfinite(density)) continue;
-    const Metric log = is_isotropic() ? log_of(Metric::of_size(1 / elementary::cbrt(density))) : log_of(implied);
-    for (const VertexIndex v : t) sum[v] = sum[v] + log, count[v] += 1;
+    const Metric log = isotropic ? log_of(Metric::of_size(1 / elementary::cbrt(density))) : log_of(implied);
+    for (const VertexIndex v : t) logs.add(v, log);
   }
-  for (VertexIndex v = 0; v < sum.size(); ++v)
-    if (count[v] > 0) sum[v] = (1 / count[v]) * sum[v];
-  return sum;
+  return std::move(logs).means();
 }
+
+/// By the lengths of the edges of the faces.
+std::vector<Metric> logs_of_faces(const TetMesh& mesh, std::span<const Triangle> faces) {
+  MeanLogs logs(mesh.points.size());
+  for (const Triangle& f : faces)
+    for (std::size_t i = 0; i < 3; ++i) {
+      const VertexIndex a = f[i], b = f[(i + 1) % 3];
+      const Metric log = log_of(Metric::of_size(distance(mesh.points[a], mesh.points[b])));
+      logs.add(a, log), logs.add(b, log);
+    }
+  return std::move(logs).means();
+}
+
+}  // namespace
+
+RimMetric::RimMetric(const TetMesh& mesh, const std::vector<Triangle>& faces, const std::vector<Metric>& logs,
+                     const MetricField& wanted)
+    : wanted_(wanted), tree_(mesh.points, faces) {
+  for (const Triangle& f : faces) faces_.push_back({logs[f[0]], logs[f[1]], logs[f[2]]});
+}
+
+RimMetric::RimMetric(const TetMesh& mesh, std::span<const std::uint8_t> frozen, const MetricField& wanted)
+    : RimMetric(mesh, rim_faces(mesh, frozen), logs_of_tets(mesh, rim_faces(mesh, frozen), wanted.is_isotropic()),
+                wanted) {}
+
+RimMetric::RimMetric(const TetMesh& mesh, const std::vector<Triangle>& faces, const MetricField& wanted)
+    : RimMetric(mesh, faces, wanted.is_isotropic() ? logs_of_faces(mesh, faces) : logs_of_tets(mesh, faces, false),
+                wanted) {}
 
 Metric RimMetric::at(Vec3 p, std::uint32_t& hint) const {
   const Metric to = wanted_.at(p, hint);

@@ -21,12 +21,15 @@ class RimMetric : public MetricField {
  public:
   /// The faces whose vertices are all frozen, of tets that have one that is not. `wanted` must outlive this.
   RimMetric(const TetMesh& mesh, std::span<const std::uint8_t> frozen, const MetricField& wanted);
+  /// These faces. In metrics of size their own edges say what the mesh is like, for they stay whatever is behind them.
+  RimMetric(const TetMesh& mesh, const std::vector<Triangle>& faces, const MetricField& wanted);
 
   Metric at(Vec3 p, std::uint32_t& hint) const override;
   bool is_isotropic() const override { return wanted_.is_isotropic(); }
 
  private:
-  std::vector<Metric> logs_at(const TetMesh& mesh, std::span<const Triangle> faces) const;
+  RimMetric(const TetMesh& mesh, const std::vector<Triangle>& faces, const std::vector<Metric>& logs,
+            const MetricField& wanted);
 
   const MetricField& wanted_;
   std::vector<std::array<Metric, 3>> faces_;  ///< logarithms of the metrics at their corners

@@ -370,6 +370,7 @@ Section section_of(const TetMesh& whole, std::vector<std::uint8_t>& chosen, int 
   take_items(whole.curve_edges, whole.curve, number, nullptr, part.curve_edges, part.curve, section.line);
   part.region_names = whole.region_names, part.region_labels = whole.region_labels;
   part.patch_names = whole.patch_names, part.curve_names = whole.curve_names;
+  part.patch_labels = whole.patch_labels, part.curve_labels = whole.curve_labels;
   take_sets(whole, section);
   return section;
 }

@@ -31,8 +31,10 @@ using Kept = std::pair<std::uint32_t, Sides>;
 
 class SheetAdapter {
  public:
-  SheetAdapter(const SurfaceMesh& given, const AdaptRules& rules)
-      : input_(given), walls_(walls_of(given, rules)), is_fixed_(touching(given)) {}
+  SheetAdapter(const SurfaceMesh& given, const AdaptRules& rules, std::span<const VertexIndex> fixed)
+      : input_(given), walls_(walls_of(given, rules)), is_fixed_(touching(given)) {
+    for (const VertexIndex v : fixed) is_fixed_[v] = 1;
+  }
 
   AdaptedSheet run(const MetricField& metric, const AdaptRules& rules, const Stage& stage) {
     const bool outer = !walls_.outer.empty() && walls_.outer[0] != 0;
@@ -152,13 +154,13 @@ class SheetAdapter {
     SurfaceMesh surface;
     for (const Vertex& v : sheet.vertices) surface.points.push_back(v.at);
     for (std::uint32_t t = 0; t < sheet.slots(); ++t)
-      if (sheet.alive(t)) surface.triangles.push_back(sheet.corners(t));
+      if (sheet.alive(t)) surface.triangles.push_back(sheet.corners(t)), surface.patch.push_back(sheet.part(t));
     return surface;
   }
 
-  static void ask_for_smaller(Sheet& sheet, const std::vector<Triangle>& triangles) {
+  static void ask_for_smaller(Sheet& sheet, const std::vector<SmoothWalls::Stray>& strays) {
     std::vector<double> factor(sheet.vertices.size(), 1);
-    for (const Triangle& t : triangles) {
+    for (const auto& [t, bound] : strays) {
       double longest = 0;
       for (std::size_t i = 0; i < 3; ++i) longest = std::max(longest, sheet.edge_length(t[i], t[(i + 1) % 3]));
       if (longest > 0)
@@ -177,21 +179,24 @@ class SheetAdapter {
   static void mend(Sheet& sheet, const SheetGuide& guide, const AdaptRules& rules, AdaptedSheet& out,
                    const Stage& stage) {
     if (rules.tolerance <= 0) return;
-    const SmoothWalls smooth(guide.guide.ground, {}, rules.tolerance);
-    out.bound = rules.strict ? rules.tolerance : std::max(rules.tolerance, smooth.of_old().upper);
-    out.deviation = smooth.of(walls_of(sheet), out.bound);
+    const auto& parts = guide.guide.ground.walls().surface.patch;
+    const std::size_t count = parts.empty() ? 1 : *std::max_element(parts.begin(), parts.end()) + 1;
+    const SmoothWalls smooth(
+        guide.guide.ground,
+        {std::vector<double>(count, rules.tolerance), std::vector<std::uint8_t>(count, rules.strict), {}, {}});
+    out.deviation = worst_of(smooth.of(walls_of(sheet)));
     Sheet best = sheet;
-    for (int k = 0; k < kMostMendingsOfSheet && out.deviation.upper > out.bound; ++k) {
-      std::vector<Triangle> strays = smooth.strays(walls_of(sheet), kShareOfSheetBound * out.bound);
-      std::erase_if(strays, [&](const Triangle& t) {
-        const auto [a, b, c] = sheet.places(t);
-        return longest_squared_edge(a, b, c) < kLeastEdgeOfSheetStray * kLeastEdgeOfSheetStray * out.bound * out.bound;
+    for (int k = 0; k < kMostMendingsOfSheet && out.deviation.excess() > 1; ++k) {
+      std::vector<SmoothWalls::Stray> strays = smooth.strays(walls_of(sheet), kShareOfSheetBound);
+      std::erase_if(strays, [&](const SmoothWalls::Stray& s) {
+        const auto [a, b, c] = sheet.places(s.corners);
+        return longest_squared_edge(a, b, c) < kLeastEdgeOfSheetStray * kLeastEdgeOfSheetStray * s.bound * s.bound;
       });
       if (strays.empty()) break;
       stage.count("triangles that strayed", static_cast<double>(strays.size()));
       ask_for_smaller(sheet, strays);
       cycles(sheet, guide, stage);
-      const Deviation now = smooth.of(walls_of(sheet), out.bound);
+      const Deviation now = worst_of(smooth.of(walls_of(sheet)));
       if (now.upper < out.deviation.upper) out.deviation = now, best = sheet;
     }
     sheet = std::move(best);
@@ -201,6 +206,7 @@ class SheetAdapter {
   SurfaceMesh surface_of(const Sheet& sheet, std::vector<VertexIndex>& old_of_new) const {
     SurfaceMesh surface;
     surface.patch_names = input_.patch_names, surface.region_names = input_.region_names;
+    surface.patch_labels = input_.patch_labels, surface.region_labels = input_.region_labels;
     std::vector<VertexIndex> number(sheet.vertices.size(), kNone);
     for (VertexIndex v = 0; v < number.size(); ++v) {
       if (sheet.star(v).empty()) continue;
@@ -265,8 +271,8 @@ MetricFit fit_of(const SurfaceMesh& surface, const MetricField& metric) {
 }
 
 AdaptedSheet adapt_sheet(const SurfaceMesh& surface, const MetricField& metric, const AdaptRules& rules,
-                         const Stage& stage) {
-  return SheetAdapter(surface, rules).run(metric, rules, stage);
+                         std::span<const VertexIndex> fixed, const Stage& stage) {
+  return SheetAdapter(surface, rules, fixed).run(metric, rules, stage);
 }
 
 }  // namespace octafront::adapt

@@ -9,6 +9,7 @@
 #include "adapt/schedule/adapt_mesh.h"
 #include "base/core/stage.h"
 
+#include <span>
 #include <vector>
 
 namespace octafront::adapt {
@@ -21,13 +22,12 @@ struct AdaptedSheet {
   SurfaceMesh surface;
   std::vector<VertexIndex> old_of_new;  ///< per vertex the one of the input that it is; kNone: new
   Deviation deviation;
-  double bound = 0;
   GivenFit given;
 };
 
-/// Requires indices in range, finite coordinates, three corners for each triangle. `rules.frozen` has no say. The
-/// same for any number of threads. Throws Cancelled.
+/// Vertices listed in `fixed` stay. Requires indices in range, finite coordinates, three corners for each triangle.
+/// `rules.frozen` has no say. The same for any number of threads. Throws Cancelled.
 AdaptedSheet adapt_sheet(const SurfaceMesh& surface, const MetricField& metric, const AdaptRules& rules,
-                         const Stage& stage);
+                         std::span<const VertexIndex> fixed, const Stage& stage);
 
 }  // namespace octafront::adapt

@@ -234,5 +234,25 @@ TEST(AdaptSheet, WhatItCannotDoIsRefused) {
   EXPECT_THROW(adapt_surface(SurfaceMesh{}, options), InputError);
 }
 
+TEST(AdaptSurface, CornersThatTheFileNamesStay) {
+  // A blunt cone, whose tip no feature tells.
+  SurfaceMesh cone;
+  constexpr int kSides = 48;
+  for (int i = 0; i < kSides; ++i) {
+    const double angle = 2 * M_PI * i / kSides;
+    cone.points.push_back({std::cos(angle), std::sin(angle), 0});
+  }
+  cone.points.push_back({0, 0, 0.3});
+  for (VertexIndex i = 0; i < kSides; ++i) cone.triangles.push_back({i, (i + 1) % kSides, kSides});
+  Options options;
+  for (const double size : {0.3, 0.08}) {
+    options.size.size = size;
+    const std::vector<PlacedSet> sets{{"Corners", NamedSet::Kind::kNodes, {{0, 0, 0.3}}}};
+    const AdaptedSurface made = adapt_surface(cone, options, {}, nullptr, sets);
+    const auto& points = made.surface.points;
+    EXPECT_NE(std::find(points.begin(), points.end(), Vec3{0, 0, 0.3}), points.end()) << size;
+  }
+}
+
 }  // namespace
 }  // namespace octafront
