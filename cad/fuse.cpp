@@ -6,6 +6,7 @@
 #include "topology.h"
 
 #include <algorithm>
+#include <cmath>
 #include <map>
 #include <numeric>
 
@@ -18,6 +19,8 @@ namespace {
 /// Solids that share less than this part of the smaller one touch, as inexactly as they were made: what they share is
 /// thinner than what any mesh shows.
 constexpr double kTouching = 1e-4;
+/// So do fits: what they share is a layer thinner than this part of what the smaller one is thick.
+constexpr double kFit = 0.01;
 /// Pairs that a message lists.
 constexpr std::size_t kMostPairs = 10;
 
@@ -57,14 +60,19 @@ std::string name_of(const Part& part, std::size_t solid) {
 /// Solids that have space in common, by their numbers in the part.
 struct Pair {
   std::size_t a, b;
-  double volume, part_of_smaller;
+  double volume = 0, depth = 0, part_of_smaller = 0;
 };
+
+/// Of a layer, or of a solid as a whole.
+double thickness_of(double volume, double area) {
+  return area > 0 ? 2 * volume / area : 0;
+}
 
 std::string in_words(const Part& part, const std::vector<Pair>& pairs) {
   std::string words;
   for (std::size_t i = 0; i < std::min(kMostPairs, pairs.size()); ++i)
     words += fmt::format("{}{} and {} overlap in {:.3g} mm^3", i == 0 ? "" : ", ", in_words(part, pairs[i].a),
-                         in_words(part, pairs[i].b), pairs[i].volume);
+                         in_words(part, pairs[i].b), pairs[i].volume / std::pow(part.per_millimetre, 3));
   if (pairs.size() > kMostPairs) words += fmt::format(" and {} more pairs", pairs.size() - kMostPairs);
   return words;
 }
@@ -72,8 +80,12 @@ std::string in_words(const Part& part, const std::vector<Pair>& pairs) {
 /// The cells of a cluster, and who gets them.
 class Shares {
  public:
-  Shares(Part& part, const Cluster& cluster, const Cells& cells, Overlap overlap)
-      : part_(part), cluster_(cluster), cells_(cells), overlap_(overlap) {
+  Shares(Part& part, const Cluster& cluster, const Cells& cells, const Arguments& asked)
+      : part_(part),
+        cluster_(cluster),
+        cells_(cells),
+        overlap_(asked.overlap),
+        tolerance_(asked.tolerance * part.per_millimetre) {
     find_pairs();
   }
 
@@ -100,18 +112,39 @@ class Shares {
 
  private:
   void find_pairs() {
-    std::map<std::pair<std::size_t, std::size_t>, double> shared;
-    for (const Cell& cell : cells_.cells)
+    struct Shared {
+      double volume = 0, area = 0;
+    };
+    std::map<std::pair<std::size_t, std::size_t>, Shared> shared;
+    for (const Cell& cell : cells_.cells) {
+      const double area = cell.owners.size() > 1 ? area_of(cell.solid) : 0;
       for (std::size_t i = 0; i < cell.owners.size(); ++i)
-        for (std::size_t k = i + 1; k < cell.owners.size(); ++k)
-          shared[{cell.owners[i], cell.owners[k]}] += cell.volume;
-    for (const auto& [pair, volume] : shared) {
+        for (std::size_t k = i + 1; k < cell.owners.size(); ++k) {
+          Shared& of_pair = shared[{cell.owners[i], cell.owners[k]}];
+          of_pair.volume += cell.volume, of_pair.area += area;
+        }
+    }
+    for (const auto& [pair, what] : shared) {
       const std::size_t a = cluster_[pair.first], b = cluster_[pair.second];
-      const double part = volume / std::min(volume_of(part_.solids[a].solid), volume_of(part_.solids[b].solid));
-      (part > kTouching ? real_ : tiny_).push_back({a, b, volume, part});
+      const auto [smaller, volume] = smaller_of(a, b);
+      const double depth = thickness_of(what.volume, what.area);
+      const Pair found{a, b, what.volume, depth, what.volume / volume};
+      (touches(found, thickness_of(volume, area_of(part_.solids[smaller].solid))) ? tiny_ : real_).push_back(found);
     }
     for (std::vector<Pair>* pairs : {&real_, &tiny_})
       std::stable_sort(pairs->begin(), pairs->end(), [](const Pair& x, const Pair& y) { return x.volume > y.volume; });
+  }
+
+  /// And its volume.
+  std::pair<std::size_t, double> smaller_of(std::size_t a, std::size_t b) const {
+    const double of_a = volume_of(part_.solids[a].solid), of_b = volume_of(part_.solids[b].solid);
+    return of_a <= of_b ? std::pair(a, of_a) : std::pair(b, of_b);
+  }
+
+  /// Who says who gets what solids share means fits, too.
+  bool touches(const Pair& pair, double thickness) const {
+    const bool is_asked = overlap_ != Overlap::kRefuse && overlap_ != Overlap::kTell;
+    return pair.part_of_smaller <= kTouching || (!is_asked && pair.depth <= std::max(tolerance_, kFit * thickness));
   }
 
   bool is_real(const Cell& cell) const {
@@ -174,13 +207,16 @@ class Shares {
                                                       : overlap_ == Overlap::kLater ? ": the later one has it"
                                                                                     : ": regions of their own"));
     if (!tiny_.empty())
-      part_.notes.push_back(fmt::format("{}: so little, {:.2g} of the smaller solid at most, is how they touch",
-                                        in_words(part_, tiny_), worst_of_tiny()));
+      part_.notes.push_back(fmt::format(
+          "{}: so little, {:.2g} of the smaller solid and {:.2g} mm deep at most, is how they touch, and "
+          "the {} one has it",
+          in_words(part_, tiny_), worst_of_tiny(&Pair::part_of_smaller),
+          worst_of_tiny(&Pair::depth) / part_.per_millimetre, overlap_ == Overlap::kFirst ? "first" : "later"));
   }
 
-  double worst_of_tiny() const {
+  double worst_of_tiny(double Pair::*what) const {
     double worst = 0;
-    for (const Pair& pair : tiny_) worst = std::max(worst, pair.part_of_smaller);
+    for (const Pair& pair : tiny_) worst = std::max(worst, pair.*what);
     return worst;
   }
 
@@ -188,6 +224,7 @@ class Shares {
   const Cluster& cluster_;
   const Cells& cells_;
   const Overlap overlap_;
+  const double tolerance_;
   std::vector<Pair> real_, tiny_;
 };
 
@@ -203,7 +240,7 @@ void take_all(Part& part, std::vector<Body> added) {
 
 }  // namespace
 
-void fuse(Part& part, Overlap overlap) {
+void fuse(Part& part, const Arguments& asked) {
   std::vector<Body> added;
   for (const Cluster& cluster : clusters_of(part)) {
     const std::string what = fmt::format("{} solids from {} on", cluster.size(), in_words(part, cluster[0]));
@@ -216,7 +253,7 @@ void fuse(Part& part, Overlap overlap) {
       cells = cells_of(solids, true);
     }
     if (cells) {
-      Shares(part, cluster, *cells, overlap).give(added);
+      Shares(part, cluster, *cells, asked).give(added);
     } else {
       part.fused = false;
       part.notes.push_back(

@@ -13,9 +13,13 @@
 #include <XCAFDoc_DocumentTool.hxx>
 #include <XCAFDoc_LayerTool.hxx>
 #include <XCAFDoc_ShapeTool.hxx>
+#include <algorithm>
+#include <cctype>
 #include <cmath>
 #include <map>
 #include <set>
+#include <string_view>
+#include <vector>
 
 namespace octafront::cad {
 
@@ -27,8 +31,20 @@ std::string utf8_of(const TCollection_ExtendedString& text) {
 }
 
 /// OpenCASCADE's name of a component that the file gives none: such a one is no instance, but a piece of its product.
-bool is_made_up(const std::string& name) {
-  return name.rfind("=>[", 0) == 0;
+bool is_made_up(std::string_view name) {
+  return name.starts_with("=>[");
+}
+
+bool is_count(std::string_view text) {
+  return std::none_of(text.begin(), text.end(), [](unsigned char c) { return std::isalpha(c) || c >= 0x80; });
+}
+
+/// Whether an occurrence's name says more than that of its product: programs count them, "2", "NAUO2", "bolt.2".
+bool says_more(std::string_view occurrence, std::string_view product) {
+  if (says_nothing(occurrence) || is_made_up(occurrence)) return false;
+  for (const std::string_view counted : {product, std::string_view("NAUO"), std::string_view()})
+    if (occurrence.starts_with(counted) && is_count(occurrence.substr(counted.size()))) return false;
+  return true;
 }
 
 class DocumentReader {
@@ -43,32 +59,56 @@ class DocumentReader {
   void read() {
     TDF_LabelSequence free;
     shapes_->GetFreeShapes(free);
-    for (const TDF_Label& label : free) visit(label, TopLoc_Location(), {});
+    for (const TDF_Label& label : free) visit(label, TopLoc_Location(), {}, {});
+    name_by_assemblies();
   }
 
  private:
+  /// Where a shape occurs: what the file calls the assemblies around it, where it gives them names of their own, and
+  /// the shape there.
+  struct Occurrence {
+    std::string assemblies, own;
+
+    std::string all() const { return assemblies + (assemblies.empty() || own.empty() ? "" : "/") + own; }
+  };
+
   /// `outer`: what the assemblies around it say, where the shape itself says nothing; the name is for pieces alone.
-  void visit(const TDF_Label& label, const TopLoc_Location& place, Labels outer) {
+  void visit(const TDF_Label& label, const TopLoc_Location& place, Labels outer, Occurrence occurrence) {
     if (XCAFDoc_ShapeTool::IsReference(label)) {
       TDF_Label product;
       if (!XCAFDoc_ShapeTool::GetReferredShape(label, product)) return;
-      // An instance's own name is a number in most files: the product's says more.
       const Labels own = labels_of(label);
       if (own.colour) outer.colour = own.colour;
       if (!own.layer.empty()) outer.layer = own.layer;
       if (!is_made_up(own.name)) outer.name.clear();
-      return visit(product, place * XCAFDoc_ShapeTool::GetLocation(label), outer);
+      occurrence.assemblies = occurrence.all();
+      occurrence.own = says_more(own.name, labels_of(product).name) ? own.name : std::string();
+      return visit(product, place * XCAFDoc_ShapeTool::GetLocation(label), outer, occurrence);
     }
     if (XCAFDoc_ShapeTool::IsAssembly(label)) {
       TDF_LabelSequence components;
       XCAFDoc_ShapeTool::GetComponents(label, components);
       if (const std::string name = told_name(label); !name.empty()) outer.name = name;
-      for (const TDF_Label& component : components) visit(component, place, outer);
+      for (const TDF_Label& component : components) visit(component, place, outer, occurrence);
       return;
     }
     Labels product = labels_of(label);
-    product.name = told_name(label);
+    product.name = occurrence.own.empty() ? told_name(label) : occurrence.own;
     take_product(label, place, merged(product, outer));
+    while (assemblies_.size() < part_.solids.size()) {
+      const bool has_its_name = part_.solids[assemblies_.size()].labels.name == occurrence.own;
+      assemblies_.push_back(has_its_name ? occurrence.assemblies : occurrence.all());
+    }
+  }
+
+  /// Solids of equal names by the assemblies that they occur in: "left arm/pin", "right arm/pin".
+  void name_by_assemblies() {
+    std::map<std::string, std::set<std::string>> places;
+    for (std::size_t s = 0; s < assemblies_.size(); ++s) places[part_.solids[s].labels.name].insert(assemblies_[s]);
+    for (std::size_t s = 0; s < assemblies_.size(); ++s) {
+      std::string& name = part_.solids[s].labels.name;
+      if (!name.empty() && places[name].size() > 1 && !assemblies_[s].empty()) name = assemblies_[s] + "/" + name;
+    }
   }
 
   void take_product(const TDF_Label& label, const TopLoc_Location& place, const Labels& product) {
@@ -151,6 +191,7 @@ class DocumentReader {
   const Handle(XCAFDoc_LayerTool) layers_;
   const LabelsOfShapes& said_;
   Part& part_;
+  std::vector<std::string> assemblies_;  ///< per solid: the occurrences that it is in, by name
 };
 
 }  // namespace

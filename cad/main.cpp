@@ -24,7 +24,7 @@ namespace {
 
 constexpr const char* kUsage =
     "octafront-cad FILE [--memory BYTES] [--cpu SECONDS] [--no-fuse] [--no-heal] [--keep-going]\n"
-    "              [--overlap refuse|tell|first|later|new]\n"
+    "              [--overlap refuse|tell|first|later|new] [--tolerance MM]\n"
     "Reads a STEP, IGES or BREP file for octafront, which starts it; speaks as src/cad/model/stream.h says.\n";
 
 std::optional<double> positive_number(const char* text) {
@@ -53,7 +53,10 @@ std::optional<Arguments> arguments_of(int argc, char** argv) {
   Arguments a;
   for (int i = 1; i < argc; ++i) {
     const std::string word = argv[i];
-    double* number = word == "--memory" ? &a.memory : word == "--cpu" ? &a.cpu_seconds : nullptr;
+    double* number = word == "--memory"      ? &a.memory
+                     : word == "--cpu"       ? &a.cpu_seconds
+                     : word == "--tolerance" ? &a.tolerance
+                                             : nullptr;
     if (number != nullptr) {
       const std::optional<double> value = i + 1 < argc ? positive_number(argv[++i]) : std::nullopt;
       if (!value) return std::nullopt;
@@ -80,13 +83,14 @@ double part_of_area(const std::vector<TopoDS_Shape>& loose, const std::vector<Bo
 
 Part opened_part(const Arguments& arguments) {
   Part part = read_part(arguments);
+  scale_up(part);
   sew(part);
   if (arguments.heal) take_other_parts(part);
   turn_outward(part);
   if (arguments.heal) heal(part);
   if (part.solids.size() > 1) {
     if (arguments.fuse)
-      fuse(part, arguments.overlap);
+      fuse(part, arguments);
     else
       part.fused = false;
   }

@@ -34,6 +34,7 @@ struct Part {
   bool fused = true;
   std::string format, unit;
   double to_millimetres = 1;
+  double per_millimetre = 1;  ///< in how many units of the shapes, and of all that is said of them
   std::vector<std::string> notes;
 };
 
@@ -43,6 +44,7 @@ struct Arguments {
   double cpu_seconds = 0;  ///< of the reading, and of each answer; 0: no limit
   bool fuse = true, heal = true, keep_going = false;
   Overlap overlap = Overlap::kRefuse;
+  double tolerance = 0;  ///< millimetres; solids that share a layer no thicker touch
 };
 
 }  // namespace octafront::cad

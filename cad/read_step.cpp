@@ -4,6 +4,8 @@
 
 #include <Interface_Check.hxx>
 #include <Interface_EntityIterator.hxx>
+#include <Interface_Graph.hxx>
+#include <Interface_Protocol.hxx>
 #include <Interface_ReportEntity.hxx>
 #include <Interface_Static.hxx>
 #include <STEPCAFControl_Reader.hxx>
@@ -13,15 +15,24 @@
 #include <StepGeom_GeomRepContextAndGlobUnitAssCtxAndGlobUncertaintyAssCtx.hxx>
 #include <StepGeom_GeometricRepresentationContextAndGlobalUnitAssignedContext.hxx>
 #include <StepRepr_GlobalUnitAssignedContext.hxx>
+#include <StepRepr_MappedItem.hxx>
+#include <StepRepr_NextAssemblyUsageOccurrence.hxx>
 #include <StepRepr_RepresentationContext.hxx>
 #include <StepRepr_RepresentationItem.hxx>
+#include <StepRepr_ShapeRepresentationRelationship.hxx>
+#include <StepShape_ContextDependentShapeRepresentation.hxx>
 #include <StepShape_FaceSurface.hxx>
 #include <StepShape_ManifoldSolidBrep.hxx>
+#include <StepShape_ShapeDefinitionRepresentation.hxx>
 #include <StepShape_ShapeRepresentation.hxx>
+#include <StepShape_ShellBasedSurfaceModel.hxx>
+#include <StepShape_SolidModel.hxx>
+#include <StepShape_TopologicalRepresentationItem.hxx>
 #include <StepVisual_HArray1OfLayeredItem.hxx>
 #include <StepVisual_LayeredItem.hxx>
 #include <StepVisual_PresentationLayerAssignment.hxx>
 #include <StepVisual_StyledItem.hxx>
+#include <TColStd_MapOfTransient.hxx>
 #include <TColStd_SequenceOfAsciiString.hxx>
 #include <TCollection_HAsciiString.hxx>
 #include <TopExp_Explorer.hxx>
@@ -33,8 +44,10 @@
 #include <cctype>
 #include <fstream>
 #include <iterator>
+#include <optional>
 #include <set>
 #include <string_view>
+#include <vector>
 
 #include <fmt/format.h>
 
@@ -51,16 +64,55 @@ std::string entity_in_words(const StepData_StepModel& model, const Handle(Standa
   return fmt::format("{} ({})", text_of(model.StringLabel(entity)), model.TypeName(entity, false));
 }
 
-/// Whether shapes and their places hang on an entity, by the package of the library that its type is from: others are
-/// of colours, texts, dimensions, angles, people.
-bool bears_shapes(const Handle(Standard_Transient) & entity) {
-  const std::string_view type = entity->DynamicType()->Name();
-  for (const char* of_properties : {"StepRepr_Descriptive", "StepRepr_Value", "StepRepr_Compound", "StepRepr_Property"})
-    if (type.starts_with(of_properties)) return false;
-  if (type == "StepRepr_Representation") return false;
-  return type.starts_with("StepGeom_") || type.starts_with("StepShape_") || type.starts_with("StepRepr_") ||
-         type.starts_with("StepBasic_Product") || type.find("LengthUnit") != type.npos || type.starts_with("StepData_");
+/// Values that stand among the items of a representation: numbers, measures, texts.
+bool is_value(const Handle(Standard_Transient) & entity) {
+  return entity->IsKind(STANDARD_TYPE(StepRepr_RepresentationItem)) &&
+         !entity->IsKind(STANDARD_TYPE(StepGeom_GeometricRepresentationItem)) &&
+         !entity->IsKind(STANDARD_TYPE(StepShape_TopologicalRepresentationItem)) &&
+         !entity->IsKind(STANDARD_TYPE(StepRepr_MappedItem));
 }
+
+/// What says how shapes look, or what is known of them.
+bool describes_shapes(const Handle(Standard_Transient) & entity) {
+  const std::string_view type = entity->DynamicType()->Name();
+  return is_value(entity) || type.starts_with("StepVisual_") || type.starts_with("StepDimTol_") ||
+         type.starts_with("StepRepr_Property") || type == "StepRepr_Representation";
+}
+
+/// The entities that shapes and their places are made of: all that hangs on those of the file that shapes begin with.
+class ShapeEntities {
+ public:
+  ShapeEntities(const StepData_StepModel& model, const Interface_Graph& graph) : graph_(graph) {
+    for (int i = 1; i <= model.NbEntities(); ++i)
+      if (begins_shapes(model.Value(i))) reach(model.Value(i));
+  }
+
+  bool contains(const Handle(Standard_Transient) & entity) const { return found_.Contains(entity); }
+
+ private:
+  static bool begins_shapes(const Handle(Standard_Transient) & entity) {
+    for (const Handle(Standard_Type) & type :
+         {STANDARD_TYPE(StepShape_ShapeRepresentation), STANDARD_TYPE(StepShape_ShapeDefinitionRepresentation),
+          STANDARD_TYPE(StepShape_ContextDependentShapeRepresentation), STANDARD_TYPE(StepShape_SolidModel),
+          STANDARD_TYPE(StepShape_TopologicalRepresentationItem), STANDARD_TYPE(StepRepr_NextAssemblyUsageOccurrence),
+          STANDARD_TYPE(StepRepr_ShapeRepresentationRelationship), STANDARD_TYPE(StepShape_ShellBasedSurfaceModel)})
+      if (entity->IsKind(type)) return true;
+    return false;
+  }
+
+  void reach(const Handle(Standard_Transient) & first) {
+    std::vector<Handle(Standard_Transient)> next{first};
+    while (!next.empty()) {
+      const Handle(Standard_Transient) entity = next.back();
+      next.pop_back();
+      if (describes_shapes(entity) || !found_.Add(entity)) continue;
+      for (Interface_EntityIterator it = graph_.Shareds(entity); it.More(); it.Next()) next.push_back(it.Value());
+    }
+  }
+
+  const Interface_Graph& graph_;
+  TColStd_MapOfTransient found_;
+};
 
 /// A name that is none does no harm, nor do texts and the like among the items of a shape, which the library does not
 /// know: what is missing is said otherwise.
@@ -74,16 +126,20 @@ struct Complaints {
   std::vector<std::string> of_shapes, of_others;
 };
 
-Complaints complaints(const StepData_StepModel& model) {
+Complaints complaints(const Handle(StepData_StepModel) & of, const Handle(Interface_Protocol) & protocol) {
+  const StepData_StepModel& model = *of;
   Complaints all;
+  std::optional<Interface_Graph> graph;  // made where there is a complaint
+  std::optional<ShapeEntities> shapes;
   const Handle(Interface_Check)& whole = model.GlobalCheck();
   for (int i = 1; !whole.IsNull() && i <= whole->NbFails(); ++i) all.of_shapes.push_back(to_utf8(whole->CFail(i)));
   for (int i = 1; i <= model.NbEntities(); ++i) {
     if (!model.IsReportEntity(i)) continue;
     const Handle(Interface_Check)& check = model.ReportEntity(i)->Check();
+    if (check->NbFails() > 0 && !shapes) shapes.emplace(model, graph.emplace(of, protocol));
     for (int k = 1; k <= check->NbFails(); ++k) {
       const std::string text = to_utf8(check->CFail(k));
-      (bears_shapes(model.Value(i)) && !is_harmless(text) ? all.of_shapes : all.of_others)
+      (shapes->contains(model.Value(i)) && !is_harmless(text) ? all.of_shapes : all.of_others)
           .push_back(entity_in_words(model, model.Value(i)) + ": " + text);
     }
   }
@@ -218,7 +274,7 @@ void read_step(const std::string& path, const std::string& name, bool keep_going
   send_progress("reading", "the text of the file");
   const IFSelect_ReturnStatus status = reader.ReadFile(path.c_str());
   const Handle(StepData_StepModel) model = reader.ChangeReader().StepModel();
-  Complaints all = model.IsNull() ? Complaints() : complaints(*model);
+  Complaints all = model.IsNull() ? Complaints() : complaints(model, reader.ChangeReader().WS()->Protocol());
   std::vector<std::string>& said = all.of_shapes;
   if (status != IFSelect_RetDone && said.empty()) said = heard();
   if (status != IFSelect_RetDone || model.IsNull() || model->NbEntities() == 0)

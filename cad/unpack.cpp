@@ -2,10 +2,12 @@
 
 #include "part.h"
 
+#include <algorithm>
 #include <array>
 #include <cerrno>
 #include <cstdint>
 #include <cstring>
+#include <filesystem>
 #include <fstream>
 #include <iterator>
 #include <string_view>
@@ -19,11 +21,23 @@ namespace octafront::cad {
 
 namespace {
 
+/// Text of CAD files is packed to a fifth or a tenth; what is packed much better is made to fill memory.
+constexpr double kMostRatio = 100, kAlwaysTaken = 1 << 26;
+
+double plausible_size(const std::string& file) {
+  std::error_code error;
+  const auto size = static_cast<double>(std::filesystem::file_size(file, error));
+  return error ? kAlwaysTaken : std::max(kAlwaysTaken, kMostRatio * size);
+}
+
 /// A file without a name that takes what is unpacked.
 class Unpacked {
  public:
   Unpacked(const std::string& file, double most_bytes)
-      : file_(file), most_bytes_(most_bytes), memory_(memfd_create("octafront-cad", MFD_CLOEXEC)) {
+      : file_(file),
+        most_bytes_(most_bytes),
+        plausible_(plausible_size(file)),
+        memory_(memfd_create("octafront-cad", MFD_CLOEXEC)) {
     if (memory_ < 0) throw Refusal(fmt::format("{} cannot be unpacked: {}", file, std::strerror(errno)));
   }
 
@@ -31,6 +45,11 @@ class Unpacked {
     total_ += static_cast<double>(n);
     if (most_bytes_ > 0 && total_ > most_bytes_)
       throw Refusal(fmt::format("{} unpacks to more than the memory that it may take", file_));
+    if (total_ > plausible_)
+      throw Refusal(
+          fmt::format("{} unpacks to more than {:g} times its size, as no CAD file does; if it is meant so, "
+                      "unpack it first",
+                      file_, kMostRatio));
     while (n > 0) {
       const ssize_t written = write(memory_, bytes, n);
       if (written <= 0) throw Refusal(fmt::format("{} cannot be unpacked: {}", file_, std::strerror(errno)));
@@ -45,7 +64,7 @@ class Unpacked {
 
  private:
   const std::string& file_;
-  const double most_bytes_;
+  const double most_bytes_, plausible_;
   const int memory_;
   double total_ = 0;
 };

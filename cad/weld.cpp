@@ -367,7 +367,8 @@ CadModel model_without_triangles(const Part& part, const Topology& topology) {
     model.faces.push_back(std::move(face));
   }
   model.fused = part.fused, model.format = part.format, model.unit = part.unit,
-  model.to_millimetres = part.to_millimetres, model.notes = part.notes;
+  model.to_millimetres = part.to_millimetres, model.per_millimetre = part.per_millimetre;
+  model.notes = part.notes;
   return model;
 }
 

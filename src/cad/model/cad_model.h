@@ -114,7 +114,7 @@ struct Solid {
 };
 
 struct CadModel {
-  std::vector<Vec3> points;                ///< millimetres
+  std::vector<Vec3> points;                ///< millimetres times `per_millimetre`, as all lengths
   std::vector<Triangle> triangles;         ///< counter-clockwise seen from the front of their face
   std::vector<std::uint32_t> face_of;      ///< one per triangle
   std::vector<std::array<Uv, 3>> corners;  ///< one per triangle: parameters of its corners on the face
@@ -129,12 +129,13 @@ struct CadModel {
   std::string format;              ///< "STEP", "IGES", "BREP"
   std::string unit;                ///< of the file, in words: "millimetre", "inch"; "": it says none
   double to_millimetres = 1;       ///< by which the file's numbers were multiplied
+  double per_millimetre = 1;       ///< the unit of all lengths here: more than 1 where the library needs larger shapes
   std::vector<std::string> notes;  ///< what was found, healed, fused, left out
 };
 
 /// How fine triangles are.
 struct Fineness {
-  double deflection = 0;  ///< millimetres, > 0: triangles and polylines lie so near to the true face or edge
+  double deflection = 0;  ///< in the model's unit, > 0: triangles and polylines lie so near to the true face or edge
   double angle = 0.25;    ///< radians, > 0: neighbours turn by no more
 };
 

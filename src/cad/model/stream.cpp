@@ -132,7 +132,7 @@ requires std::is_same_v<std::remove_const_t<T>, CadModel>
 void fields(Ar& ar, T& it) {
   ar(it.points), ar(it.triangles), ar(it.face_of), ar(it.corners), ar(it.faces), ar(it.edges), ar(it.solids);
   ar(it.vertices), ar(it.tolerance), ar(it.fused), ar(it.format), ar(it.unit);
-  ar(it.to_millimetres), ar(it.notes);
+  ar(it.to_millimetres), ar(it.per_millimetre), ar(it.notes);
 }
 template <class Ar, class T>
 requires std::is_same_v<std::remove_const_t<T>, Where>

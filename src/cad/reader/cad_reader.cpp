@@ -1,10 +1,13 @@
 #include "cad/reader/cad_reader.h"
 
 #include <octafront/error.h>
+#include <octafront/limits.h>
 
+#include <algorithm>
 #include <array>
 #include <cerrno>
 #include <chrono>
+#include <cmath>
 #include <csignal>
 #include <cstring>
 #include <utility>
@@ -91,6 +94,13 @@ std::string in_words(const Where& where) {
   return fmt::format("while {}{}{}", where.stage, where.what.empty() ? "" : " " + where.what, place_of(where));
 }
 
+/// No more than is left to the whole run.
+ReaderOptions within_limits(ReaderOptions options) {
+  options.seconds = std::min(options.seconds, std::max(1.0, std::ceil(cpu_seconds_left())));
+  options.memory = std::min(options.memory, memory_at_most());
+  return options;
+}
+
 }  // namespace
 
 /// The program and the pipes to it. Writing to one that is dead must not kill us: SIGPIPE is held off by the caller's
@@ -98,7 +108,10 @@ std::string in_words(const Where& where) {
 class CadReader::Process {
  public:
   Process(const std::string& file, const ReaderOptions& options, Tell tell, const RunContext& context)
-      : options_(options), tell_(std::move(tell)), context_(context) {
+      : options_(within_limits(options)),
+        is_hurried_(options_.seconds < options.seconds),
+        tell_(std::move(tell)),
+        context_(context) {
     const std::string program = reader_program();
     std::array<int, 2> to = make_pipe(), from = make_pipe();
     posix_spawn_file_actions_t actions;
@@ -123,6 +136,7 @@ class CadReader::Process {
   ~Process() {
     close_end(to_), close_end(from_);
     if (pid_ > 0) kill(pid_, SIGKILL), waitpid(pid_, nullptr, 0);
+    count_ended_programs();
   }
   Process(const Process&) = delete;
 
@@ -165,6 +179,8 @@ class CadReader::Process {
                                        "--memory",  std::to_string(options_.memory),
                                        "--cpu",     std::to_string(static_cast<long>(options_.seconds)),
                                        "--overlap", word_of(options_.overlap)};
+    if (options_.tolerance > 0)
+      arguments.insert(arguments.end(), {"--tolerance", fmt::format("{}", options_.tolerance)});
     if (!options_.heals) arguments.push_back("--no-heal");
     if (options_.keeps_going) arguments.push_back("--keep-going");
     return arguments;
@@ -187,10 +203,7 @@ class CadReader::Process {
       const int ready = poll(&waiting, 1, kPollMilliseconds);
       if (ready > 0) break;
       if (std::chrono::duration<double>(Clock::now() - begun).count() > options_.seconds)
-        throw InputError(
-            fmt::format("the CAD reader was stopped after {:.0f} s without a sign of life {}. Give it more "
-                        "by `cad_seconds`, or a larger size",
-                        options_.seconds, in_words(where_)));
+        fail_as_slow("without a sign of life");
     }
     std::array<char, 1 << 16> block;
     const ssize_t n = read(from_, block.data(), block.size());
@@ -199,16 +212,20 @@ class CadReader::Process {
     received_.append(block.data(), static_cast<std::size_t>(n));
   }
 
+  [[noreturn]] void fail_as_slow(const char* how) const {
+    const std::string what =
+        fmt::format("the CAD reader was stopped after {:.0f} s {} {}", options_.seconds, how, in_words(where_));
+    if (is_hurried_)
+      throw LimitError(LimitError::Limit::kCpuSeconds, what + ", when the run's time was spent (`cpu_seconds`)");
+    throw InputError(what + ". Give it more by `cad_seconds`, or a larger size");
+  }
+
   [[noreturn]] void fail_as_ended() {
     int status = 0;
     waitpid(pid_, &status, 0);
     pid_ = -1;
     const int signal = WIFSIGNALED(status) ? WTERMSIG(status) : 0;
-    if (signal == SIGXCPU || signal == SIGKILL)
-      throw InputError(
-          fmt::format("the CAD reader was stopped after {:.0f} s of work {}. Give it more by "
-                      "`cad_seconds`, or a larger size",
-                      options_.seconds, in_words(where_)));
+    if (signal == SIGXCPU || signal == SIGKILL) fail_as_slow("of work");
     if (WIFEXITED(status) && WEXITSTATUS(status) == kNotStarted && where_.stage.empty())
       throw InputError(
           "the CAD reader octafront-cad does not start: OpenCASCADE's libraries are not here, or not those that it was "
@@ -221,6 +238,7 @@ class CadReader::Process {
   }
 
   ReaderOptions options_;
+  bool is_hurried_;  ///< by what is left of the run's own CPU seconds
   Tell tell_;
   const RunContext& context_;
   pid_t pid_ = -1;

@@ -17,6 +17,7 @@ namespace octafront::cad {
 /// What the reader is told, and what it may use.
 struct ReaderOptions {
   Overlap overlap = Overlap::kRefuse;
+  double tolerance = 0;               ///< millimetres; solids that share a layer no thicker touch; 0: fits alone do
   bool heals = true;                  ///< what its check finds fault with
   bool keeps_going = false;           ///< without what cannot be read
   double seconds = 300;               ///< of CPU time, and of silence by the wall clock, > 0

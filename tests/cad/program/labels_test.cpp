@@ -47,6 +47,16 @@ class NamesOfDocument : public ::testing::Test {
     return label;
   }
 
+  TDF_Label assembly_of(const char* name) {
+    const TDF_Label label = shapes_->NewShape();
+    TDataStd_Name::Set(label, name);
+    return label;
+  }
+
+  void place(const TDF_Label& assembly, const TDF_Label& product, const char* name) {
+    TDataStd_Name::Set(shapes_->AddComponent(assembly, product, TopLoc_Location()), name);
+  }
+
   std::vector<std::string> names() {
     Part part;
     take_document(document_, {}, part);
@@ -69,9 +79,30 @@ TEST_F(NamesOfDocument, AnInstanceWithoutANameHasNotThatOfItsAssembly) {
   const TDF_Label assembly = shapes_->NewShape();
   TDataStd_Name::Set(assembly, "ASSEMBLY");
   const TDF_Label nameless = shapes_->AddShape(box(0), false);
-  TDataStd_Name::Set(shapes_->AddComponent(assembly, nameless, TopLoc_Location()), "instance 1");
+  TDataStd_Name::Set(shapes_->AddComponent(assembly, nameless, TopLoc_Location()), "NAUO1");
   shapes_->UpdateAssemblies();
   EXPECT_EQ(names(), std::vector<std::string>{""});
+}
+
+TEST_F(NamesOfDocument, OccurrencesKeepTheirNamesUnlessTheyCountTheProduct) {
+  const TDF_Label assembly = assembly_of("ASSEMBLY"), pin = shapes_->AddShape(box(0), false),
+                  bolt = shapes_->AddShape(box(5), false);
+  TDataStd_Name::Set(pin, "pin"), TDataStd_Name::Set(bolt, "bolt");
+  place(assembly, pin, "pin left"), place(assembly, pin, "pin right"), place(assembly, pin, "pin.3");
+  place(assembly, bolt, "bolt_1"), place(assembly, bolt, "2");
+  shapes_->UpdateAssemblies();
+  EXPECT_EQ(names(), (std::vector<std::string>{"pin left", "pin right", "pin", "bolt", "bolt#2"}));
+}
+
+TEST_F(NamesOfDocument, EqualNamesHaveThoseOfTheAssembliesThatTheyOccurIn) {
+  const TDF_Label robot = assembly_of("ROBOT"), arm = assembly_of("arm"), pin = shapes_->AddShape(box(0), false),
+                  base = shapes_->AddShape(box(5), false);
+  TDataStd_Name::Set(pin, "pin"), TDataStd_Name::Set(base, "base");
+  place(arm, pin, "1"), place(arm, pin, "top");
+  place(robot, arm, "arm left"), place(robot, arm, "arm right"), place(robot, base, "3");
+  shapes_->UpdateAssemblies();
+  EXPECT_EQ(names(),
+            (std::vector<std::string>{"arm left/pin", "arm left/top", "arm right/pin", "arm right/top", "base"}));
 }
 
 TEST_F(NamesOfDocument, PiecesWithNamesKeepThem) {

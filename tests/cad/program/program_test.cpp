@@ -223,6 +223,41 @@ TEST_F(CadProgram, WhoOverlapsByNextToNothingTouches) {
   EXPECT_NE(m.notes[0].find("is how they touch"), std::string::npos) << m.notes[0];
 }
 
+TEST_F(CadProgram, AFitIsAContact) {
+  const std::string file = written("fitted", ".step");
+  const CadModel m = model_of_file(file);
+  ASSERT_EQ(m.solids.size(), 2u);
+  EXPECT_TRUE(m.fused);
+  const double pin = M_PI * 3.01 * 3.01 * 4;
+  EXPECT_NEAR(m.solids[1].volume, pin, 1e-4 * pin);
+  EXPECT_NEAR(m.solids[0].volume + m.solids[1].volume, 1600, 1e-2);
+  ASSERT_EQ(m.notes.size(), 1u);
+  EXPECT_NE(m.notes[0].find("0.01 mm deep at most, is how they touch, and the later one has it"), std::string::npos)
+      << m.notes[0];
+  // Who says who gets what they share means fits, too.
+  EXPECT_NEAR(model_of_file(file, {"--overlap", "first"}).solids[0].volume, 1600 - M_PI * 36, 1e-2);
+}
+
+TEST_F(CadProgram, WhatIsThinnerThanTheToleranceIsAContact) {
+  // Boxes that share a layer of 2.
+  const std::string file = written("overlapping", ".brep");
+  EXPECT_TRUE(run_reader(file, {"--tolerance", "0.5"}, kFine).models.empty());
+  const CadModel m = model_of_file(file, {"--tolerance", "2"});
+  ASSERT_EQ(m.solids.size(), 2u);
+  EXPECT_NEAR(m.solids[0].volume, 950, 1e-9);
+  EXPECT_NEAR(m.solids[1].volume, 125, 1e-9);
+}
+
+TEST_F(CadProgram, TinyShapesAreScaledUp) {
+  const CadModel m = run_reader(written("tiny", ".brep"), {}, "triangulate 1e-3 0.25\n").models.at(0);
+  EXPECT_EQ(m.per_millimetre, 1000);
+  ASSERT_EQ(m.solids.size(), 1u);
+  EXPECT_EQ(open_edges(m, 0), 0);
+  const double volume = (100 * 50 - M_PI * 100) * 20 * 1e-9;
+  EXPECT_NEAR(m.solids[0].volume, volume, 1e-5 * volume);
+  EXPECT_NEAR(volume_behind(m, 0), volume, 1e-2 * volume);
+}
+
 TEST_F(CadProgram, TangentContactIsRefusedWithItsPlace) {
   const std::string file = written("groove", ".brep");
   const Answer answer = run_reader(file, {}, kFine);
@@ -301,6 +336,14 @@ TEST_F(CadProgram, CompressedFilesAreRead) {
   }
 }
 
+TEST_F(CadProgram, WhatUnpacksToManyTimesItsSizeIsRefused) {
+  const std::string file = folder_ / "zeros.stpz";
+  write_gzip("ISO-10303-21;" + std::string(70 << 20, ' '), file);
+  const Answer answer = run_reader(file, {}, kFine);
+  ASSERT_EQ(answer.errors.size(), 1u);
+  EXPECT_NE(answer.errors[0].find("100 times its size"), std::string::npos) << answer.errors[0];
+}
+
 /// Calls the parts of an assembly that nobody named so.
 std::string with_parts_called(const std::string& text, const std::string& name) {
   static const std::regex unnamed("'Open CASCADE STEP translator [0-9.]+ [0-9]+\\.[0-9]+'");
@@ -358,6 +401,42 @@ TEST_F(CadProgram, DamagedColoursAndTextsAreANote) {
   ASSERT_EQ(m.solids.size(), 1u);
   ASSERT_EQ(m.notes.size(), 1u);
   EXPECT_NE(m.notes[0].find("no shape needs: #99990 (COLOUR_RGB)"), std::string::npos) << m.notes[0];
+}
+
+/// Puts entities at the end of a STEP file.
+void add_entities(const std::string& file, const std::string& entities) {
+  std::string text = content_of(file);
+  text.insert(text.rfind("ENDSEC;"), entities);
+  std::ofstream(file, std::ios::binary) << text;
+}
+
+TEST_F(CadProgram, DamagedValuesBesideShapesAreANote) {
+  // Numbers of a kind that the schema does not allow, as validation properties of AP242 have them.
+  for (const std::string of :
+       {"#99993=PROPERTY_DEFINITION('validation','',#5);\n#99994=PROPERTY_DEFINITION_REPRESENTATION(#99993,#99992);\n",
+        "#99995=SHAPE_REPRESENTATION('values',(#99991),CONTEXT);\n"}) {
+    const std::string file = written("box", ".step"), text = content_of(file);
+    std::smatch context;
+    ASSERT_TRUE(std::regex_search(text, context, std::regex(R"(SHAPE_REPRESENTATION\('',\([#0-9,]+\),(#[0-9]+)\))")));
+    add_entities(file,
+                 "#99991=INTEGER_REPRESENTATION_ITEM('number of faces',6.5);\n"
+                 "#99992=REPRESENTATION('values',(#99991),$);\n" +
+                     std::regex_replace(of, std::regex("CONTEXT"), context[1].str()));
+    const CadModel m = model_of_file(file);
+    ASSERT_EQ(m.solids.size(), 1u);
+    EXPECT_NEAR(m.solids[0].volume, 1000, 1e-6);
+    ASSERT_EQ(m.notes.size(), 1u);
+    EXPECT_NE(m.notes[0].find("no shape needs: #99991 (INTEGER_REPRESENTATION_ITEM)"), std::string::npos) << m.notes[0];
+  }
+}
+
+TEST_F(CadProgram, DamagedGeometryThatNoShapeHasIsANote) {
+  const std::string file = written("box", ".step");
+  add_entities(file, "#99991=CARTESIAN_POINT('',(1.,'two',3.));\n");
+  const CadModel m = model_of_file(file);
+  ASSERT_EQ(m.solids.size(), 1u);
+  ASSERT_EQ(m.notes.size(), 1u);
+  EXPECT_NE(m.notes[0].find("no shape needs: #99991"), std::string::npos) << m.notes[0];
 }
 
 TEST_F(CadProgram, SameFileSameBytes) {

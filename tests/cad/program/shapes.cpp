@@ -8,6 +8,7 @@
 #include <BRepBuilderAPI_MakeSolid.hxx>
 #include <BRepBuilderAPI_MakeWire.hxx>
 #include <BRepBuilderAPI_Sewing.hxx>
+#include <BRepBuilderAPI_Transform.hxx>
 #include <BRepFilletAPI_MakeFillet.hxx>
 #include <BRepPrimAPI_MakeBox.hxx>
 #include <BRepPrimAPI_MakeCone.hxx>
@@ -49,6 +50,25 @@ TopoDS_Shape pair_at(double x) {
   BRep_Builder().Add(both, BRepPrimAPI_MakeBox(gp_Pnt(0, 0, 0), 10, 10, 10).Shape());
   BRep_Builder().Add(both, BRepPrimAPI_MakeBox(gp_Pnt(x, 2, 2), 5, 5, 5).Shape());
   return both;
+}
+
+/// A plate of 20 x 20 x 4 with a hole of radius 3, and a pin in it that is .02 thicker.
+TopoDS_Shape fitted() {
+  TopoDS_Compound both;
+  BRep_Builder().MakeCompound(both);
+  const TopoDS_Shape plate = BRepPrimAPI_MakeBox(gp_Pnt(-10, -10, 0), 20, 20, 4).Shape();
+  BRep_Builder().Add(both, BRepAlgoAPI_Cut(plate, BRepPrimAPI_MakeCylinder(3, 4).Shape()).Shape());
+  BRep_Builder().Add(both, BRepPrimAPI_MakeCylinder(3.01, 4).Shape());
+  return both;
+}
+
+/// A box of 1e-4 x 5e-5 x 2e-5 with a hole of radius 1e-5.
+TopoDS_Shape tiny() {
+  const TopoDS_Shape box = BRepPrimAPI_MakeBox(100, 50, 20).Shape(),
+                     hole = BRepPrimAPI_MakeCylinder(gp_Ax2(gp_Pnt(50, 25, 0), gp_Dir(0, 0, 1)), 10, 20).Shape();
+  gp_Trsf smaller;
+  smaller.SetScaleFactor(1e-6);
+  return BRepBuilderAPI_Transform(BRepAlgoAPI_Cut(box, hole).Shape(), smaller, true).Shape();
 }
 
 /// Boxes of 10 that share each other's halves.
@@ -167,6 +187,8 @@ TopoDS_Shape shape_named(const std::string& name) {
   if (name == "apart") return pair_at(20);
   if (name == "within") return pair_at(3);
   if (name == "nearly") return pair_at(10 - 1e-6);
+  if (name == "fitted") return fitted();
+  if (name == "tiny") return tiny();
   if (name == "three") return three();
   if (name == "instances") return instances();
   if (name == "nested faces") return faces_of(nested());

@@ -7,7 +7,8 @@
 namespace octafront::testing {
 
 /// A shape by name, of a side or diameter of about 10: "box", "cylinder", "cone", "sphere", "torus", "revolved",
-/// "extruded", "filleted", "touching", "overlapping", "apart", "within", "nearly", "three", "groove", "nested faces",
+/// "extruded", "filleted", "touching", "overlapping", "apart", "within", "nearly", "fitted", "tiny", "three", "groove",
+/// "nested faces",
 /// "instances", "wrong part", "mostly open".
 TopoDS_Shape shape_named(const std::string& name);
 /// Its volume, by formula; nothing known: 0.

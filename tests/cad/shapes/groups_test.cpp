@@ -3,6 +3,8 @@
 #include "../half_pipe.h"
 #include "cad/shapes/names.h"
 
+#include <cmath>
+
 #include <gtest/gtest.h>
 
 namespace octafront::cad {
@@ -13,6 +15,33 @@ TEST(Groups, JoinNarrowFacesThatMeetSmoothly) {
   EXPECT_EQ(group_faces(model, 3).group_of, (std::vector<std::uint32_t>{0, 0, 1}));
   EXPECT_EQ(group_faces(model, 0.5).group_of, (std::vector<std::uint32_t>{0, 1, 2}));
   EXPECT_EQ(group_faces(model, std::nullopt).names.size(), 3u);
+}
+
+/// A flat face with a wedge beside it, whose line runs into its border at so many degrees.
+CadModel wedge(double degrees) {
+  CadModel m;
+  const double rise = 10 * std::tan(degrees * M_PI / 180);
+  m.points = {{0, 0, 0}, {10, rise, 0}, {10, 0, 0}, {0, 20, 0}};
+  m.triangles = {{0, 2, 1}, {0, 1, 3}}, m.face_of = {0, 1}, m.corners.resize(2);
+  m.faces.resize(2);
+  m.faces[0].area = 5 * rise, m.faces[1].area = 100;
+  const auto line = [&](VertexIndex a, VertexIndex b, std::vector<std::uint32_t> faces) {
+    CadEdge& edge = m.edges.emplace_back();
+    edge.vertices = {a, b}, edge.parameters = {0, 1}, edge.faces = std::move(faces);
+    edge.length = 10, edge.is_smooth = edge.faces.size() == 2;
+  };
+  line(0, 1, {0, 1}), line(0, 2, {0}), line(2, 1, {0}), line(1, 3, {1}), line(3, 0, {1});
+  return m;
+}
+
+TEST(Groups, JoinFacesThatPartInACusp) {
+  EXPECT_EQ(group_faces(wedge(10), std::nullopt).names.size(), 1u);
+  EXPECT_EQ(group_faces(wedge(10), 0.1).names.size(), 1u);
+  EXPECT_EQ(group_faces(wedge(30), std::nullopt).names.size(), 2u);
+  EXPECT_EQ(faces_as_they_are(wedge(10)).names.size(), 2u);
+  CadModel sharp = wedge(10);
+  sharp.edges[0].is_smooth = false;
+  EXPECT_EQ(group_faces(sharp, 0.1).names.size(), 2u);
 }
 
 TEST(Groups, DoNotReachAcrossSolids) {
