@@ -360,18 +360,19 @@ def cgns(file):
     return {"points": points, "tets": tets, "parts": parts}
 
 
-# ---- binary MEDIT, version 3: keyword, place of the next one, count, values
+# ---- binary MEDIT, version 2 (places of 4 bytes) or 3 (of 8): keyword, place of the next one, count, values
 
 def medit_binary(file, expected):
     data = file.read_bytes()
     integer = lambda at: int(np.frombuffer(data, "<i4", 1, at)[0])
-    assert integer(0) == 1 and integer(4) == 3
+    assert integer(0) == 1 and integer(4) in (2, 3)
+    place = 4 if integer(4) == 2 else 8
     at, sections = 8, {}
     while True:
-        code, following = integer(at), int(np.frombuffer(data, "<i8", 1, at + 4)[0])
+        code, following = integer(at), int(np.frombuffer(data, f"<i{place}", 1, at + 4)[0])
         if code == 54:
             break
-        sections[code] = (at + 16, integer(at + 12))
+        sections[code] = (at + 8 + place, integer(at + 4 + place))
         at = following
     def rows(code, width):
         start, count = sections[code]

@@ -8,8 +8,13 @@
 #include <algorithm>
 #include <array>
 #include <atomic>
+#include <cctype>
 #include <cerrno>
+#include <charconv>
+#include <csignal>
 #include <cstring>
+#include <mutex>
+#include <set>
 #include <system_error>
 #include <vector>
 
@@ -27,11 +32,53 @@ fs::path folder_of(const fs::path& file) {
   return file.has_parent_path() ? file.parent_path() : fs::path(".");
 }
 
+constexpr std::string_view kTemporary = ".tmp";
+
+/// What names of temporary files of this machine begin with: others may share the folder, with processes of their own.
+std::string name_of_ours() {
+  std::array<char, 64> host{};
+#ifndef _WIN32
+  if (::gethostname(host.data(), host.size() - 1) != 0) host = {};
+#endif
+  std::string name = ".octafront-";
+  for (const char c : std::string_view(host.data()))
+    if (std::isalnum(static_cast<unsigned char>(c)) != 0) name += c;
+  return name + '-';
+}
+
+/// The process that a temporary file is of, by its name; 0: it is not one of this machine's.
+int owner_of(std::string_view name, std::string_view ours) {
+  if (!name.starts_with(ours) || !name.ends_with(kTemporary)) return 0;
+  name.remove_prefix(ours.size());
+  int process = 0;
+  const auto [end, error] = std::from_chars(name.data(), name.data() + name.size(), process);
+  return error == std::errc() && *end == '-' ? process : 0;
+}
+
+/// What killed processes left in a folder goes, once for each folder that is written to.
+void remove_those_of_dead([[maybe_unused]] const fs::path& folder) {
+#ifndef _WIN32
+  static std::mutex mutex;
+  static std::set<fs::path> seen;
+  const std::lock_guard lock(mutex);
+  if (!seen.insert(folder).second) return;
+  const std::string ours = name_of_ours();
+  std::vector<fs::path> dead;
+  std::error_code error;
+  for (fs::directory_iterator at(folder, error), end; !error && at != end; at.increment(error)) {
+    const int owner = owner_of(at->path().filename().string(), ours);
+    if (owner > 0 && ::kill(owner, 0) != 0 && errno == ESRCH) dead.push_back(at->path());
+  }
+  for (const fs::path& file : dead) fs::remove_all(file, error);
+#endif
+}
+
 }  // namespace
 
 fs::path temporary_beside(const fs::path& target) {
   static std::atomic<unsigned> counter{0};
-  return folder_of(target) / fmt::format(".octafront-{}-{}.tmp", ::getpid(), counter++);
+  remove_those_of_dead(folder_of(target));
+  return folder_of(target) / fmt::format("{}{}-{}{}", name_of_ours(), ::getpid(), counter++, kTemporary);
 }
 
 // Replacing a link would cut it; what it points to is replaced instead, or made where it points to nothing yet.

@@ -71,7 +71,7 @@ class AtomicFile {
 /// in a circle.
 std::filesystem::path links_followed(const std::filesystem::path& file);
 
-/// A name in the folder of `target` that no other writer uses.
+/// A name in the folder of `target` that no other writer uses. What killed processes of this machine left there goes.
 std::filesystem::path temporary_beside(const std::filesystem::path& target);
 
 /// Throws OutputError if `target` cannot be a new file or replace an old one: folder missing or not writable, or the

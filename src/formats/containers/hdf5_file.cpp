@@ -244,11 +244,33 @@ void Hdf5Reader::fail(std::string_view what) const {
   throw InputError(fmt::format("{}: {}", name_, what));
 }
 
+namespace {
+
+/// How links are followed: not to other files, for a link could lead to any.
+class OwnLinks : public Handle {
+ public:
+  explicit OwnLinks(hid_t of_class) : Handle(H5Pcreate(of_class), H5Pclose) {
+    H5Pset_elink_cb(
+        get(), [](const char*, const char*, const char*, const char*, unsigned*, hid_t, void*) -> herr_t { return -1; },
+        nullptr);
+  }
+};
+
+/// Values that lie in other files could be anybody's.
+void require_own_values(const Hdf5Reader& reader, std::int64_t dataset, const std::string& path) {
+  const Handle how(H5Dget_create_plist(dataset), H5Pclose);
+  if (H5Pget_external_count(how.get()) > 0 || H5Pget_layout(how.get()) == H5D_VIRTUAL)
+    reader.fail(fmt::format("the values of {} lie in other files; copy them into this one (h5repack)", path));
+}
+
+}  // namespace
+
 bool Hdf5Reader::has(const std::string& path) const {
+  const OwnLinks links(H5P_LINK_ACCESS);
   // Each part of the path must be there before the next one can be asked for.
   for (std::size_t at = path.find('/', 1);; at = path.find('/', at + 1)) {
     const std::string part = path.substr(0, at);
-    if (part != "/" && H5Lexists(file_, part.c_str(), H5P_DEFAULT) <= 0) return false;
+    if (part != "/" && H5Lexists(file_, part.c_str(), links.get()) <= 0) return false;
     if (at == std::string::npos) return true;
   }
 }
@@ -256,7 +278,7 @@ bool Hdf5Reader::has(const std::string& path) const {
 std::vector<std::string> Hdf5Reader::members(const std::string& path) const {
   std::vector<std::string> names;
   if (!has(path)) return names;
-  const Handle group(H5Gopen2(file_, path.c_str(), H5P_DEFAULT), H5Gclose);
+  const Handle group(H5Gopen2(file_, path.c_str(), OwnLinks(H5P_GROUP_ACCESS).get()), H5Gclose);
   if (!group.valid()) return names;
   H5Literate(
       group.get(), H5_INDEX_NAME, H5_ITER_INC, nullptr,
@@ -270,8 +292,8 @@ std::vector<std::string> Hdf5Reader::members(const std::string& path) const {
 
 std::vector<std::uint64_t> Hdf5Reader::shape(const std::string& path) const {
   if (!has(path)) fail(fmt::format("has no {}; the file is damaged: export it again", path));
-  const Handle set(H5Dopen2(file_, path.c_str(), H5P_DEFAULT), H5Dclose);
-  if (!set.valid()) fail(fmt::format("{} holds no values", path));
+  const Handle set(H5Dopen2(file_, path.c_str(), OwnLinks(H5P_DATASET_ACCESS).get()), H5Dclose);
+  if (!set.valid()) fail(fmt::format("{} holds no values (links to other files are not followed)", path));
   const Handle space(H5Dget_space(set.get()), H5Sclose);
   const int rank = H5Sget_simple_extent_ndims(space.get());
   constexpr int kMostRank = 32;
@@ -284,6 +306,7 @@ std::vector<std::uint64_t> Hdf5Reader::shape(const std::string& path) const {
 /// A few kilobytes may claim, or unpack to, gigabytes.
 void Hdf5Reader::check_size(std::int64_t dataset, const std::string& path, std::uint64_t count) const {
   constexpr std::uint64_t kBestRatio = 1032, kAlways = 4096;  // of deflate
+  require_own_values(*this, dataset, path);
   const std::uint64_t stored = H5Dget_storage_size(dataset);
   if (stored > file_bytes_) fail(fmt::format("{} claims {} bytes, more than the file has", path, stored));
   if (count > kBestRatio * stored + kAlways)
@@ -299,7 +322,7 @@ std::vector<T> Hdf5Reader::values(const std::string& path, std::int64_t type) co
     count *= n;
   }
   context_.check();
-  const Handle set(H5Dopen2(file_, path.c_str(), H5P_DEFAULT), H5Dclose);
+  const Handle set(H5Dopen2(file_, path.c_str(), OwnLinks(H5P_DATASET_ACCESS).get()), H5Dclose);
   check_size(set.get(), path, count);
   std::vector<T> all(count);
   if (count > 0 && H5Dread(set.get(), type, H5S_ALL, H5S_ALL, H5P_DEFAULT, all.data()) < 0)
@@ -318,7 +341,7 @@ std::string Hdf5Reader::bytes(const std::string& path) const {
   const std::vector<std::uint64_t> extent = shape(path);
   std::uint64_t count = 1;
   for (const std::uint64_t n : extent) count *= std::min<std::uint64_t>(n, std::uint64_t{1} << 20);
-  const Handle set(H5Dopen2(file_, path.c_str(), H5P_DEFAULT), H5Dclose);
+  const Handle set(H5Dopen2(file_, path.c_str(), OwnLinks(H5P_DATASET_ACCESS).get()), H5Dclose);
   const Handle type(H5Dget_type(set.get()), H5Tclose);
   const std::size_t each = H5Tget_size(type.get());
   constexpr std::uint64_t kMost = std::uint64_t{1} << 26;  // names
@@ -331,7 +354,7 @@ std::string Hdf5Reader::bytes(const std::string& path) const {
 }
 
 std::int64_t Hdf5Reader::integer_attribute(const std::string& of, const std::string& name) const {
-  const Handle object(H5Oopen(file_, of.c_str(), H5P_DEFAULT), H5Oclose);
+  const Handle object(H5Oopen(file_, of.c_str(), OwnLinks(H5P_LINK_ACCESS).get()), H5Oclose);
   const Handle attribute(H5Aopen(object.get(), name.c_str(), H5P_DEFAULT), H5Aclose);
   std::int64_t value = 0;
   const Handle space(H5Aget_space(attribute.get()), H5Sclose);

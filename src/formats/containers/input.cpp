@@ -99,6 +99,15 @@ std::size_t line_of(std::string_view bytes, const char* at) {
   return 1 + static_cast<std::size_t>(feeds);
 }
 
+/// Without the byte order mark that some editors put before a text in UTF-8. The head of a binary STL file, which may
+/// be anything, is followed by a count with a zero byte.
+std::string_view without_mark(std::string_view bytes) {
+  constexpr std::string_view kMark = "\xef\xbb\xbf";
+  constexpr std::size_t kHead = 84;
+  const bool is_text = bytes.substr(0, kHead).find('\0') == std::string_view::npos;
+  return bytes.starts_with(kMark) && is_text ? bytes.substr(kMark.size()) : bytes;
+}
+
 }  // namespace
 
 void Input::fail(std::string_view message) const {
@@ -142,7 +151,7 @@ LoadedFile::LoadedFile(const std::filesystem::path& file, const RunContext& cont
   } else {
     input_.fail("is a device or socket, not a file");
   }
-  input_.bytes = {bytes_.get(), size};
+  input_.bytes = without_mark({bytes_.get(), size});
   if (size == 0) input_.fail("is empty (0 bytes); export or copy it again");
 }
 

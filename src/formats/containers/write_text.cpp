@@ -16,7 +16,9 @@ bool same_file(const std::string& a, const std::string& b) {
   const auto place = [&](const std::filesystem::path& file) {
     return std::filesystem::weakly_canonical(io::links_followed(file), error);
   };
-  return place(a) == place(b);
+  const std::filesystem::path first = place(a);
+  // Names that no file can have are no place, and not the same one.
+  return !first.empty() && first == place(b);
 }
 
 void check_text_target(const std::string& file) {

@@ -4,6 +4,8 @@
 
 #include "formats/containers/input.h"
 
+#include <algorithm>
+#include <array>
 #include <cstddef>
 #include <cstdint>
 #include <cstring>
@@ -22,7 +24,10 @@ class MeditSections {
   template <class Visit>
   void for_each(const Visit& visit) {
     constexpr std::int32_t kDimension = 3, kEnd = 54;
-    if (get<std::int32_t>() != 1) fail("big-endian files are not read here; save it on a little-endian machine");
+    constexpr std::int32_t kOne = 1, kSwappedOne = 1 << 24;
+    const auto mark = get<std::int32_t>();
+    if (mark != kOne && mark != kSwappedOne) fail("does not begin with the mark of binary MEDIT");
+    is_swapped_ = mark == kSwappedOne;
     version_ = get<std::int32_t>();
     if (version_ < 1 || version_ > 4)
       fail(fmt::format("version {} of binary MEDIT is not read here (1 to 4 are)", version_));
@@ -46,7 +51,10 @@ class MeditSections {
     progress_.reach(at_);
     if (bytes_left() < sizeof(T)) fail("the file ends here; it is truncated: copy or export it again");
     T value;
-    std::memcpy(&value, at_, sizeof(T));
+    std::array<char, sizeof(T)> bytes;
+    std::memcpy(bytes.data(), at_, sizeof(T));
+    if (is_swapped_) std::reverse(bytes.begin(), bytes.end());
+    std::memcpy(&value, bytes.data(), sizeof(T));
     at_ += sizeof(T);
     return value;
   }
@@ -62,6 +70,7 @@ class MeditSections {
   ReadingProgress progress_;
   const char* at_;
   int version_ = 0;
+  bool is_swapped_ = false;  ///< the file is of a machine of the other byte order
 };
 
 }  // namespace octafront::io

@@ -2,9 +2,13 @@
 
 #include <octafront/error.h>
 
+#include <cstdio>
 #include <system_error>
 
 #include <fmt/core.h>
+#ifndef _WIN32
+#include <fcntl.h>
+#endif
 
 namespace octafront::io {
 namespace {
@@ -16,6 +20,15 @@ namespace fs = std::filesystem;
       fmt::format("{}: {}: {}; an older one of this name is unchanged", file.string(), what, error.message()));
 }
 
+/// Whether two folders could swap their names in one step: who is killed has one of them under its name at any time.
+bool exchanged([[maybe_unused]] const fs::path& a, [[maybe_unused]] const fs::path& b) {
+#ifdef RENAME_EXCHANGE
+  return ::renameat2(AT_FDCWD, a.c_str(), AT_FDCWD, b.c_str(), RENAME_EXCHANGE) == 0;
+#else
+  return false;
+#endif
+}
+
 /// A file or folder takes the place of an older one, which goes only then.
 void put_in_place(const fs::path& temporary, const fs::path& final) {
   std::error_code error;
@@ -25,6 +38,10 @@ void put_in_place(const fs::path& temporary, const fs::path& final) {
     return;
   }
   if (final.has_parent_path()) fs::create_directories(final.parent_path(), error);
+  if (exchanged(temporary, final)) {
+    fs::remove_all(temporary, error);
+    return;
+  }
   const fs::path old = temporary.string() + ".old";
   if (fs::exists(final)) fs::rename(final, old, error);
   if (error) fail(final, "cannot be replaced", error);

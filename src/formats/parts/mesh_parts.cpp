@@ -61,7 +61,7 @@ MeshParts::MeshParts(const TetMesh& mesh, Hidden hidden)
     });
     groups_[k] = std::move(by.members);
     numbers_[k] = std::move(by.numbers);
-    if (k == 0) take_labels();
+    take_labels(kOrigins[k]);
     add_numbered(kOrigins[k], groups_[k], numbers_[k], *names[k]);
   }
   for (std::uint32_t s = 0; s < mesh.sets.size(); ++s) {
@@ -78,18 +78,23 @@ MeshParts::MeshParts(const TetMesh& mesh, Hidden hidden)
   }
 }
 
-void MeshParts::take_labels() {
-  const std::vector<std::int64_t>& labels = mesh_.region_labels;
-  const std::vector<std::uint32_t>& regions = numbers_[0];
+void MeshParts::take_labels(Part::Origin origin) {
+  const std::vector<std::int64_t>& labels = labels_of(origin);
+  const auto k = static_cast<std::size_t>(origin);
+  const bool is_region = origin == Part::Origin::kRegion;
+  if (labels.empty() || numbers_[k].empty()) return;
+  const bool ascends = std::adjacent_find(labels.begin(), labels.end(), std::greater_equal<>()) == labels.end();
+  std::vector<std::int64_t> sorted = labels;
+  std::sort(sorted.begin(), sorted.end());
+  // A patch that was divided keeps its number in each piece; regions are told apart.
+  are_numbers_[k] = !is_region || std::adjacent_find(sorted.begin(), sorted.end()) == sorted.end();
   // Files have signed numbers of 32 bits, and some of them count on from the last one.
   constexpr std::int64_t kMost = std::numeric_limits<std::int32_t>::max() / 2;
-  if (regions.empty() || regions.back() >= labels.size() ||
-      !std::all_of(labels.begin(), labels.end(), [](std::int64_t l) { return std::abs(l) <= kMost; }))
-    return;
-  labels_.assign(labels.begin(), labels.end());
-  // Readers number regions in the order of their tags.
-  labels_are_tags_ = labels_.front() > 0 &&
-                     std::adjacent_find(labels_.begin(), labels_.end(), std::greater_equal<>()) == labels_.end();
+  const bool is_complete = numbers_[k].back() < labels.size();
+  if (sorted.front() < -kMost || sorted.back() > kMost) return;
+  if (is_region && is_complete) labels_.assign(labels.begin(), labels.end());
+  // Readers number parts in the order of their tags.
+  are_tags_[k] = labels.front() > 0 && ascends && (is_complete || !is_region);
 }
 
 void MeshParts::add_numbered(Part::Origin origin, const Groups<>& members, const std::vector<std::uint32_t>& numbers,
@@ -100,7 +105,7 @@ void MeshParts::add_numbered(Part::Origin origin, const Groups<>& members, const
   for (std::size_t i = 0; i < numbers.size(); ++i) {
     const std::uint32_t n = numbers[i];
     const bool is_named = n < names.size() && !names[n].empty();
-    const std::uint32_t tag = origin == Part::Origin::kRegion ? tag_of_region(n) : n + 1;
+    const std::uint32_t tag = tag_of(origin, n);
     std::string name = is_named ? names[n] : default_name(origin, n, numbers.size() == 1);
     names_.clean(name);
     parts_.push_back({origin, kind, n, tag, std::move(name), is_named, members[i]});

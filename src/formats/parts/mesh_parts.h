@@ -9,6 +9,7 @@
 #include "base/core/groups.h"
 #include "base/core/utf8.h"
 #include "base/mesh/edge_nodes.h"
+#include "base/mesh/labels.h"
 
 #include <algorithm>
 #include <array>
@@ -78,8 +79,15 @@ class MeshParts {
   const std::vector<std::int32_t>& labels() const { return labels_; }
   /// What formats call region r that have a number above 0 for each: its label where all have one of their own, else
   /// r + 1.
-  std::uint32_t tag_of_region(std::uint32_t r) const {
-    return labels_are_tags_ ? static_cast<std::uint32_t>(labels_[r]) : r + 1;
+  std::uint32_t tag_of_region(std::uint32_t r) const { return tag_of(Part::Origin::kRegion, r); }
+  /// The same of a region, patch or curve.
+  std::uint32_t tag_of(Part::Origin origin, std::uint32_t n) const {
+    return are_tags_[static_cast<std::size_t>(origin)] ? static_cast<std::uint32_t>(label_at(labels_of(origin), n))
+                                                       : n + 1;
+  }
+  /// What formats call it that hold any number: its label where it has one (of regions: each its own), else n + 1.
+  std::int64_t number_of(Part::Origin origin, std::uint32_t n) const {
+    return are_numbers_[static_cast<std::size_t>(origin)] ? label_at(labels_of(origin), n) : std::int64_t{n} + 1;
   }
   std::uint32_t patch_of(std::size_t f) const {
     const bool inside = f >= mesh_.boundary.size();
@@ -124,7 +132,12 @@ class MeshParts {
   std::vector<VertexIndex> nodes_of(const Part& part) const;
 
  private:
-  void take_labels();
+  const std::vector<std::int64_t>& labels_of(Part::Origin origin) const {
+    return origin == Part::Origin::kRegion  ? mesh_.region_labels
+           : origin == Part::Origin::kPatch ? mesh_.patch_labels
+                                            : mesh_.curve_labels;
+  }
+  void take_labels(Part::Origin origin);
   void add_numbered(Part::Origin origin, const Groups<>& members, const std::vector<std::uint32_t>& numbers,
                     const std::vector<std::string>& names);
 
@@ -138,7 +151,7 @@ class MeshParts {
   std::vector<Part> parts_;
   NameCleaning names_;
   std::vector<std::int32_t> labels_;
-  bool labels_are_tags_ = false;
+  std::array<bool, 3> are_tags_{}, are_numbers_{};  ///< the labels of regions, patches, curves
   mutable std::vector<Side> sides_;
 };
 

@@ -1,7 +1,9 @@
 #include "formats/parts/raw_mesh.h"
 
 #include "base/geometry/predicates.h"
+#include "base/mesh/adjacency.h"
 #include "base/mesh/face_table.h"
+#include "base/mesh/labels.h"
 #include "base/mesh/renumber.h"
 #include "formats/parts/boundary.h"
 #include "formats/parts/mesh_parts.h"
@@ -19,14 +21,15 @@ namespace {
 /// From references of a file to numbers from 0.
 class Numbering {
  public:
-  explicit Numbering(const std::vector<std::int64_t>& refs) {
+  /// `may_keep`: references may become numbers that have gaps.
+  explicit Numbering(const std::vector<std::int64_t>& refs, bool may_keep = true) {
     // Consecutive elements mostly share a reference: equal neighbours are passed over before sorting.
     for (const std::int64_t r : refs)
       if (sorted_.empty() || sorted_.back() != r) sorted_.push_back(r);
     std::sort(sorted_.begin(), sorted_.end());
     sorted_.erase(std::unique(sorted_.begin(), sorted_.end()), sorted_.end());
     constexpr std::int64_t kMostKept = 1 << 20;  // what follows may keep a table of them
-    keeps_ = sorted_.empty() || (sorted_.front() >= 1 && sorted_.back() <= kMostKept);
+    keeps_ = may_keep && (sorted_.empty() || (sorted_.front() >= 1 && sorted_.back() <= kMostKept));
   }
 
   std::uint32_t number(std::int64_t ref) const {
@@ -35,6 +38,8 @@ class Numbering {
   }
   bool has(std::int64_t ref) const { return std::binary_search(sorted_.begin(), sorted_.end(), ref); }
   std::uint32_t unused() const { return sorted_.empty() ? 0 : number(sorted_.back()) + 1; }
+  /// Of the numbers; empty if each is one less than its reference.
+  std::vector<std::int64_t> labels() const { return keeps_ ? std::vector<std::int64_t>() : sorted_; }
 
  private:
   std::vector<std::int64_t> sorted_;
@@ -48,6 +53,7 @@ struct Numbered {
   std::vector<std::uint32_t> numbers;  ///< one per element of the file; kNone: in no group
   std::vector<std::string> names;
   std::uint32_t next = 0;  ///< a number that is free
+  std::vector<std::int64_t> labels = {};
 };
 
 void set_name(std::vector<std::string>& names, std::uint32_t number, const std::string& name) {
@@ -64,6 +70,7 @@ Numbered by_reference(const std::vector<std::int64_t>& refs, const std::map<std:
   for (const auto& [ref, name] : names)
     if (numbering.has(ref)) set_name(out.names, numbering.number(ref), name);
   out.next = numbering.unused();
+  out.labels = numbering.labels();
   return out;
 }
 
@@ -102,6 +109,12 @@ bool has_none(std::span<const std::uint32_t> row) {
   return std::find(row.begin(), row.end(), kNone) != row.end();
 }
 
+void note_divided(RawMesh& raw) {
+  if (raw.hexahedra > 0)
+    raw.notes.push_back(fmt::format(
+        "{} hexahedra were divided into tetrahedra, six each where none of their edges is a point", raw.hexahedra));
+}
+
 /// Brings a file's mesh in order, step by step.
 class Ordering {
  public:
@@ -115,6 +128,7 @@ class Ordering {
       input_.context.check();
       (this->*step)();
     }
+    note_divided(raw_);
     if (raw_.other_elements > 0)
       raw_.notes.push_back(fmt::format("{} elements of other kinds were left out", raw_.other_elements));
     return {std::move(mesh_), std::move(raw_.format), std::move(raw_.notes), turned_, turned_wide_};
@@ -201,9 +215,22 @@ class Ordering {
     mesh_.region = std::move(regions.numbers);
     forget_zeros(mesh_.region);
     mesh_.region_names = std::move(regions.names);
+    mesh_.region_labels = std::move(regions.labels);
+    if (!raw_.region_labels.empty() && !mesh_.region.empty()) take_region_labels();
     const bool only =
         std::adjacent_find(mesh_.region.begin(), mesh_.region.end(), std::not_equal_to<>()) == mesh_.region.end();
     forget_default_names(mesh_.region_names, Part::Origin::kRegion, only);
+  }
+
+  /// Where the file has labels beside the references of regions.
+  void take_region_labels() {
+    std::vector<std::int64_t> labels(1 + *std::max_element(mesh_.region.begin(), mesh_.region.end()));
+    for (std::size_t n = 0; n < labels.size(); ++n) labels[n] = static_cast<std::int64_t>(n) + 1;
+    for (std::size_t t = 0; t < mesh_.region.size(); ++t) {
+      const auto label = raw_.region_labels.find(raw_.tet_ref[t]);
+      if (label != raw_.region_labels.end()) labels[mesh_.region[t]] = label->second;
+    }
+    mesh_.region_labels = std::move(labels);
   }
 
   /// Programs differ in which way the triangles of a wedge face: a file whose wedges are all the other way round has
@@ -254,6 +281,7 @@ class Ordering {
     forget_zeros(mesh_.patch);
     forget_zeros(mesh_.interface_patch);
     mesh_.patch_names = std::move(patches.names);
+    mesh_.patch_labels = std::move(patches.labels);
     forget_default_names(mesh_.patch_names, Part::Origin::kPatch, false);
   }
 
@@ -380,6 +408,7 @@ class Ordering {
     if (dropped > 0) raw_.notes.push_back(fmt::format("{} edges of no tetrahedron were left out", dropped));
     forget_zeros(mesh_.curve);
     mesh_.curve_names = std::move(curves.names);
+    mesh_.curve_labels = std::move(curves.labels);
     forget_default_names(mesh_.curve_names, Part::Origin::kCurve, false);
   }
 
@@ -518,8 +547,65 @@ MeshFile ordered_mesh(RawMesh raw, const Input& input) {
 
 namespace {
 
-/// Boundary and interfaces of a mesh, with the regions on both sides.
-SurfaceMesh walls_of(TetMesh mesh) {
+/// Labels that just count from 1 say nothing.
+void forget_counting(std::vector<std::int64_t>& labels) {
+  for (std::size_t n = 0; n < labels.size(); ++n)
+    if (labels[n] != static_cast<std::int64_t>(n) + 1) return;
+  labels.clear();
+}
+
+/// The labels of so many numbers.
+std::vector<std::int64_t> labels_of_all(const std::vector<std::int64_t>& labels, std::size_t count) {
+  std::vector<std::int64_t> all;
+  for (std::size_t n = 0; n < count; ++n) all.push_back(label_at(labels, n));
+  return all;
+}
+
+/// Regions numbered without gaps, each with its label.
+void close_gaps(TetMesh& mesh) {
+  if (mesh.region.empty()) return;
+  const Numbering numbering(std::vector<std::int64_t>(mesh.region.begin(), mesh.region.end()), false);
+  std::vector<std::string> names;
+  std::vector<std::int64_t> labels;
+  for (const std::int64_t r : numbering.labels()) {
+    const auto n = static_cast<std::size_t>(r);
+    names.push_back(n < mesh.region_names.size() ? mesh.region_names[n] : std::string());
+    labels.push_back(label_at(mesh.region_labels, n));
+  }
+  for (std::uint32_t& r : mesh.region) r = numbering.number(r);
+  mesh.region_names = std::move(names);
+  forget_counting(labels);
+  mesh.region_labels = std::move(labels);
+  forget_zeros(mesh.region);
+}
+
+/// Faces between two regions that the mesh does not list are a patch behind all. Returns how many.
+std::size_t add_missing_interfaces(TetMesh& mesh) {
+  if (mesh.region.empty()) return 0;
+  std::vector<Triangle> found;
+  const FaceTable listed = face_table(mesh.points.size(), mesh.interfaces);
+  half_face_table(mesh.tets, mesh.points.size())
+      .for_each_group([&](const Triangle& key, std::span<const FaceTable::Entry> on_face) {
+        if (on_face.size() != 2 || !listed.group_of(key).empty()) return;
+        const std::uint32_t one = on_face[0].face, other = on_face[1].face;
+        if (mesh.region[one / 4] != mesh.region[other / 4]) found.push_back(corners_of(mesh.tets, one));
+      });
+  if (found.empty()) return 0;
+  std::uint32_t free = 1;
+  for (const auto* patch : {&mesh.patch, &mesh.interface_patch})
+    for (const std::uint32_t p : *patch) free = std::max(free, p + 1);
+  mesh.interface_patch.resize(mesh.interfaces.size(), 0);
+  mesh.interfaces.insert(mesh.interfaces.end(), found.begin(), found.end());
+  mesh.interface_patch.resize(mesh.interfaces.size(), free);
+  return found.size();
+}
+
+/// Boundary and interfaces of a mesh, with the regions on both sides. `by_references`: the numbers of patches mean
+/// something.
+SurfaceMesh walls_of(TetMesh mesh, bool by_references, std::vector<std::string>& notes) {
+  close_gaps(mesh);
+  if (const std::size_t added = add_missing_interfaces(mesh); added > 0)
+    notes.push_back(fmt::format("{} faces between regions that the file lacks were added", added));
   SurfaceMesh surface;
   surface.triangles = std::move(mesh.boundary);
   surface.triangles.insert(surface.triangles.end(), mesh.interfaces.begin(), mesh.interfaces.end());
@@ -543,20 +629,54 @@ SurfaceMesh walls_of(TetMesh mesh) {
   surface.points = std::move(mesh.points);
   surface.patch_names = std::move(mesh.patch_names);
   surface.region_names = std::move(mesh.region_names);
+  surface.region_labels = std::move(mesh.region_labels);
   const bool is_plain = std::all_of(surface.sides.begin(), surface.sides.end(), [](const Sides& s) {
     return s == Sides{kNone, 0};
   });
   if (is_plain) surface.sides.clear();
+  // Patches of a complex are divided by their sides, and each piece keeps the number.
+  if (!is_plain && by_references && !surface.patch.empty())
+    mesh.patch_labels =
+        labels_of_all(mesh.patch_labels, 1 + *std::max_element(surface.patch.begin(), surface.patch.end()));
+  surface.patch_labels = std::move(mesh.patch_labels);
   return surface;
+}
+
+void note_curves(std::size_t edges, std::vector<std::string>& notes) {
+  if (edges > 0)
+    notes.push_back(fmt::format("{} edges of lines are left out: a surface has none but where patches meet", edges));
+}
+
+/// Groups of a file without tetrahedra.
+std::vector<PlacedSet> placed_groups(const RawMesh& raw) {
+  std::vector<PlacedSet> sets;
+  for (const RawMesh::Group& group : raw.groups) {
+    PlacedSet set{group.name, group.kind, {}};
+    const auto add = [&](const auto& row) {
+      for (const VertexIndex v : row) set.places.push_back(raw.points[v]);
+    };
+    for (const std::uint32_t m : group.members) {
+      if (group.kind == Kind::kNodes) set.places.push_back(raw.points[m]);
+      if (group.kind == Kind::kEdges) add(raw.edges[m]);
+      if (group.kind == Kind::kFaces) add(raw.triangles[m]);
+    }
+    if (!set.places.empty()) sets.push_back(std::move(set));
+  }
+  return sets;
 }
 
 }  // namespace
 
 SurfaceFile surface_of(RawMesh raw, const Input& input) {
   if (!raw.tets.empty()) {
+    const bool by_references = !raw.triangle_ref.empty();
     MeshFile file = ordered_mesh(std::move(raw), input);
+    std::vector<PlacedSet> sets = placed_sets(file.mesh);
+    note_curves(file.mesh.curve_edges.size(), file.notes);
     file.notes.push_back(fmt::format("boundary and interfaces of {} tetrahedra taken", file.mesh.tets.size()));
-    return {walls_of(std::move(file.mesh)), file.format, std::move(file.notes)};
+    if (file.mesh.is_second_order()) file.notes.emplace_back("mid-side nodes are left out: surfaces are linear");
+    SurfaceMesh walls = walls_of(std::move(file.mesh), by_references, file.notes);
+    return {std::move(walls), file.format, std::move(file.notes), {}, {}, std::move(sets)};
   }
   if (raw.triangles.empty())
     input.fail(fmt::format("holds no triangles ({} elements of other kinds): there is no surface to mesh",
@@ -567,13 +687,16 @@ SurfaceFile surface_of(RawMesh raw, const Input& input) {
   for (std::uint32_t& n : patches.numbers)
     if (n == kNone) n = patches.next;
   forget_zeros(patches.numbers);
+  file.sets = placed_groups(raw);
   file.surface.points = std::move(raw.points);
   file.surface.triangles = std::move(raw.triangles);
   file.surface.patch = std::move(patches.numbers);
   file.surface.patch_names = std::move(patches.names);
+  file.surface.patch_labels = std::move(patches.labels);
   forget_default_names(file.surface.patch_names, Part::Origin::kPatch, false);
   file.format = std::move(raw.format);
   file.notes = std::move(raw.notes);
+  note_curves(raw.edges.size(), file.notes);
   if (raw.other_elements > 0)
     file.notes.push_back(fmt::format("{} elements of other kinds were left out", raw.other_elements));
   return file;

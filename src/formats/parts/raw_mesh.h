@@ -70,9 +70,11 @@ struct RawMesh {
   /// Made by add_face() of quadrilaterals, linear or not; in the order of the triangles.
   std::vector<WideFace> wide_faces;
   std::map<std::int64_t, std::string> region_names, surface_names, curve_names;  ///< by reference
+  std::map<std::int64_t, std::int64_t> region_labels;  ///< by reference: TetMesh::region_labels
   std::vector<Group> groups;
   std::vector<Period> periods;
   std::uint64_t other_elements = 0;  ///< of kinds that a TetMesh does not hold
+  std::uint64_t hexahedra = 0;       ///< that were divided
   std::vector<std::string> notes;
   Field field;
 
@@ -86,6 +88,10 @@ struct RawMesh {
   /// `rank`: the numbers of points by which one is the lowest; empty: their indices. Returns how many tetrahedra.
   std::uint32_t add_wide_cell(std::span<const VertexIndex> nodes, std::int64_t ref,
                               std::span<const std::uint64_t> rank = {});
+  /// Adds the tetrahedra of a hexahedron (its first eight nodes: a quadrilateral, and the one above it), divided in the
+  /// same way; those of an edge or face of no length are left out. That it was one is forgotten.
+  std::uint32_t add_hexahedron(std::span<const VertexIndex> nodes, std::int64_t ref,
+                               std::span<const std::uint64_t> rank = {});
   /// Adds a triangle, of three nodes or six, or the two of a quadrilateral, of four, eight or nine, along its shorter
   /// diagonal; beside wedges and pyramids ordered_mesh() divides it as they are. The points must be known. Returns how
   /// many triangles.

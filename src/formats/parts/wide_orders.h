@@ -21,6 +21,11 @@ inline constexpr std::array<std::array<std::size_t, 4>, 5> kWedgeFaces{
 inline constexpr std::array<std::array<std::size_t, 4>, 5> kPyramidFaces{
     {{0, 3, 2, 1}, {0, 1, 4, 4}, {1, 2, 4, 4}, {2, 3, 4, 4}, {3, 0, 4, 4}}};
 
+/// Outward faces of hexahedra: a quadrilateral, counter-clockwise seen from the one above it, and that one. In the
+/// order of Abaqus's S1, S2, ...
+inline constexpr std::array<std::array<std::size_t, 4>, 6> kHexahedronFaces{
+    {{0, 3, 2, 1}, {4, 5, 6, 7}, {0, 1, 5, 4}, {1, 2, 6, 5}, {2, 3, 7, 6}, {3, 0, 4, 7}}};
+
 /// The order of nodes in a format: its node i is ours at place wedge[i] or pyramid[i]. Ours are the corners of
 /// WideCell, then the mid-side nodes of kWedgeEdges or kPyramidEdges. Linear cells have the first six or five.
 struct WideOrder {

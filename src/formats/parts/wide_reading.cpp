@@ -167,12 +167,30 @@ std::uint32_t RawMesh::add_wide_cell(std::span<const VertexIndex> nodes, std::in
   return cell.tet_count;
 }
 
+std::uint32_t RawMesh::add_hexahedron(std::span<const VertexIndex> nodes, std::int64_t ref,
+                                      std::span<const std::uint64_t> rank) {
+  const VertexIndex low =
+      *std::ranges::min_element(nodes.first(8), {}, [&](VertexIndex v) { return rank_of(v, rank); });
+  const std::size_t before = tets.size();
+  for (const std::array<std::size_t, 4>& face : kHexahedronFaces) {
+    Quad q;
+    for (std::size_t k = 0; k < 4; ++k) q[k] = nodes[face[k]];
+    if (std::find(q.begin(), q.end(), low) != q.end()) continue;
+    const std::size_t k = is_divided_from_first(q, rank) ? 0 : 1;
+    for (const Triangle& t : {Triangle{q[k], q[k + 1], q[k + 2]}, Triangle{q[k], q[k + 2], q[(k + 3) % 4]}})
+      if (t[0] != t[1] && t[1] != t[2] && t[2] != t[0]) add_tet(std::array{t[0], t[2], t[1], low}, ref);
+  }
+  ++hexahedra;
+  return static_cast<std::uint32_t>(tets.size() - before);
+}
+
 void divide_like_wide_cells(RawMesh& raw) {
-  if (raw.wide_cells.empty()) raw.wide_faces.clear();
+  if (raw.wide_cells.empty() && raw.hexahedra == 0) raw.wide_faces.clear();
   for (const WideFace& face : raw.wide_faces) {
     const auto halves = halves_of(face.nodes);
     std::copy(halves.begin(), halves.end(), raw.triangles.begin() + face.first);
   }
+  if (raw.wide_cells.empty()) raw.wide_faces.clear();
 }
 
 void add_diagonals(RawMesh& raw) {

@@ -9,8 +9,8 @@
 
 namespace octafront::io {
 
-/// Divides quadrilaterals as the wedges and pyramids of the mesh are, from their lowest node; without any they stay as
-/// they are, and are forgotten.
+/// Divides quadrilaterals as the wedges, pyramids and hexahedra of the mesh are, from their lowest node; without any
+/// they stay as they are, and are forgotten.
 void divide_like_wide_cells(RawMesh& raw);
 
 /// Mid-side nodes for the diagonals of wedges and pyramids of second order, which files have not: in the middle, moved

@@ -261,6 +261,7 @@ void Pieces::add_faces(Piece& piece, const std::vector<std::uint32_t>& faces) co
   mesh.patch = of_items(mesh_.patch, outer);
   mesh.source = of_items(mesh_.source, outer);
   mesh.patch_names = mesh_.patch_names;
+  mesh.patch_labels = mesh_.patch_labels;
   mesh.face_layers = of_items(mesh_.face_layers, faces);
   if (!mesh_.interface_patch.empty())
     for (std::size_t i = inside; i < faces.size(); ++i)
@@ -287,6 +288,7 @@ void Pieces::add_edges(Piece& piece, const std::vector<std::uint32_t>& edges) co
   }
   mesh.curve = of_items(mesh_.curve, edges);
   mesh.curve_names = mesh_.curve_names;
+  mesh.curve_labels = mesh_.curve_labels;
 }
 
 void Pieces::add_sets(Piece& piece, std::span<const TetIndex> tets, const std::vector<std::uint32_t>& faces,

@@ -78,6 +78,7 @@ Piece piece_of_share(const TetMesh& share, const Comm& comm) {
   near.points = share.points, near.tets = share.tets, near.region = share.region;
   near.region_names = share.region_names, near.region_labels = share.region_labels;
   near.patch_names = share.patch_names, near.curve_names = share.curve_names;
+  near.patch_labels = share.patch_labels, near.curve_labels = share.curve_labels;
   std::vector<GlobalId> tet_ids;
   Division division{static_cast<std::uint32_t>(comm.size()), std::vector<std::uint32_t>(share.tets.size(), here)};
   for (std::size_t t = 0; t < share.tets.size(); ++t) tet_ids.push_back(first + t);

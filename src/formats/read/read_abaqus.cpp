@@ -1,20 +1,21 @@
-// Abaqus and CalculiX input decks: nodes, tetrahedra, wedges, pyramids and sets; all else is passed over. *ELEMENT ...
-// ELSET and *ELSET make groups of elements, *NSET of nodes, *SURFACE, TYPE=ELEMENT of faces. Sets may name sets;
-// GENERATE, one instance of a part. Triangles and quadrilaterals (shells, membranes) are faces, in the group of their
-// set.
+// Abaqus and CalculiX input decks (abaqus_deck.h) as a mesh: nodes, tetrahedra, wedges, pyramids and sets of parts,
+// where their instances are; all else is passed over. *ELEMENT ... ELSET and *ELSET make groups of elements, *NSET of
+// nodes, *SURFACE of faces or nodes; of several instances each is one more group. Triangles and quadrilaterals (shells,
+// membranes) are faces, in the group of their set.
 
-#include "formats/containers/scanner.h"
+#include "formats/parts/boundary.h"
 #include "formats/parts/raw_mesh.h"
 #include "formats/parts/wide_orders.h"
+#include "formats/read/abaqus_deck.h"
 #include "formats/read/id_map.h"
 #include "formats/read/readers.h"
 
 #include <algorithm>
 #include <array>
-#include <charconv>
 #include <map>
 #include <optional>
 #include <set>
+#include <span>
 #include <utility>
 
 #include <fmt/core.h>
@@ -24,402 +25,346 @@ namespace {
 
 using Kind = NamedSet::Kind;
 
-std::string upper(std::string_view text) {
-  std::string out(text);
-  for (char& c : out)
-    if (c >= 'a' && c <= 'z') c = static_cast<char>(c - 'a' + 'A');
-  return out;
-}
-
-/// Lines of a deck, split at commas. Views point into the file.
-class Deck {
- public:
-  explicit Deck(const Input& input) : input_(input), scan_(input) {}
-
-  /// The next line that is no comment; false at the end. Comments are told to `comment`.
-  template <class Comment>
-  bool next(const Comment& comment) {
-    while (!scan_.at_end()) {
-      at_ = scan_.position();
-      line_ = scan_.rest_of_line();
-      if (!line_.starts_with("**")) return true;
-      comment(line_);
-    }
-    return false;
-  }
-  bool is_keyword() const { return line_.starts_with('*'); }
-  std::string_view line() const { return line_; }
-  const char* at() const { return at_; }
-  [[noreturn]] void fail(std::string_view message) const { input_.fail_at_line(at_, message); }
-
-  /// The fields of this line.
-  const std::vector<std::string_view>& fields() {
-    fields_.clear();
-    std::string_view rest = line_;
-    while (true) {
-      const std::size_t comma = rest.find(',');
-      fields_.push_back(trimmed(rest.substr(0, comma)));
-      if (comma == std::string_view::npos) break;
-      rest.remove_prefix(comma + 1);
-    }
-    // A comma at the end says that the list goes on.
-    while (!fields_.empty() && fields_.back().empty()) fields_.pop_back();
-    return fields_;
-  }
-
-  std::optional<std::int64_t> whole(std::string_view field) const {
-    std::int64_t value = 0;
-    const auto [stop, error] = std::from_chars(field.data(), field.data() + field.size(), value);
-    if (error != std::errc() || stop != field.data() + field.size() || field.empty()) return std::nullopt;
-    return value;
-  }
-  std::int64_t integer(std::string_view field, std::string_view what) const {
-    const auto value = whole(field);
-    if (!value) fail(fmt::format("expected {}, found {}", what, in_quotes(field)));
-    return *value;
-  }
-  double real(std::string_view field) const {
-    double value = 0;
-    if (!parse_number(field, value) || !std::isfinite(value))
-      fail(fmt::format("expected a coordinate, found {}", in_quotes(field)));
-    return value;
-  }
-
- private:
-  const Input& input_;
-  Scanner scan_;
-  const char* at_ = nullptr;
-  std::string_view line_;
-  std::vector<std::string_view> fields_;
-};
-
-/// A set: ids, and names of other sets. Sets are told apart by name in upper case.
-struct DeckSet {
-  std::string name;
-  std::vector<std::int64_t> ids;
-  std::vector<std::string> names;
-};
-
-class Sets {
- public:
-  DeckSet& at(std::string_view name) {
-    const auto [entry, is_new] = place_.try_emplace(upper(name), sets_.size());
-    if (is_new) sets_.push_back({std::string(name), {}, {}});
-    return sets_[entry->second];
-  }
-  /// The ids of a set and of those that it names, each once: circles end.
-  std::vector<std::int64_t> collect(const std::string& name) const {
-    std::vector<std::int64_t> ids;
-    std::vector<std::size_t> todo;
-    std::set<std::size_t> seen;
-    const auto find = [&](const std::string& wanted) {
-      const auto found = place_.find(upper(wanted));
-      if (found != place_.end() && seen.insert(found->second).second) todo.push_back(found->second);
-    };
-    find(name);
-    while (!todo.empty()) {
-      const DeckSet& next = sets_[todo.back()];
-      todo.pop_back();
-      ids.insert(ids.end(), next.ids.begin(), next.ids.end());
-      for (const std::string& other : next.names) find(other);
-    }
-    return ids;
-  }
-  const std::vector<DeckSet>& all() const { return sets_; }
-
- private:
-  std::map<std::string, std::size_t> place_;
-  std::vector<DeckSet> sets_;
-};
-
-/// Elements and sides of a face, "S1": 0.
-struct DeckSurface {
-  std::string name;
-  std::vector<std::pair<std::string, int>> sides;
-};
-
 /// Corners of the sides S1 = 123, S2 = 124, S3 = 234, S4 = 134 by the corner that they lack.
 constexpr std::array<int, 4> kLacks{3, 2, 0, 1};
 
+/// Of an element: a range of tetrahedra or triangles; of a wedge or pyramid its nodes among those listed.
+struct ElementPlace {
+  std::uint32_t first, last, listed;
+};
+
+/// What numbers and names mean: in an instance those of its part and its own, else those of the assembly.
+struct DeckScope {
+  std::string name;  ///< of an instance, in upper case
+  std::vector<const DeckBlock*> blocks;
+  const DeckInstance* instance = nullptr;
+  IdMap nodes, solids, shells;
+  std::vector<VertexIndex> points;  ///< by the places of `nodes`
+  std::vector<ElementPlace> solid_places, shell_places;
+};
+
+/// A number in a scope.
+struct DeckItem {
+  std::size_t scope;
+  std::int64_t id;
+};
+
 class Abaqus {
  public:
-  explicit Abaqus(const Input& input) : deck_(input), bytes_(input.bytes.size()) { raw_.format = "Abaqus"; }
+  explicit Abaqus(const Input& input) : input_(input), deck_(read_deck(input)) {}
 
   RawMesh read() {
-    const auto comment = [this](std::string_view line) { note_name(line); };
-    bool more = deck_.next(comment);
-    while (more) {
-      if (!deck_.is_keyword()) {
-        more = deck_.next(comment);
-        continue;
-      }
-      read_keyword();
-      while ((more = deck_.next(comment)) && !deck_.is_keyword()) read_data();
-      finish_keyword();
-    }
+    raw_.format = "Abaqus";
+    raw_.notes = deck_.notes;
+    raw_.other_elements = deck_.other_elements;
+    make_scopes();
+    for (DeckScope& scope : scopes_) add_nodes(scope);
+    for (DeckScope& scope : scopes_)
+      for (const DeckBlock* block : scope.blocks) add_elements(scope, *block);
     make_groups();
     return std::move(raw_);
   }
 
  private:
-  enum class Section { kNone, kNodes, kElements, kNodeSet, kElementSet, kSurface };
-
-  /// "** NAME left_part IS "left part"", as we write it.
-  void note_name(std::string_view line) {
-    constexpr std::string_view kHead = "** NAME ", kIs = " IS \"";
-    const std::size_t is = line.find(kIs);
-    if (!line.starts_with(kHead) || is == std::string_view::npos || !line.ends_with('"')) return;
-    if (line.size() < is + kIs.size() + 1) return;
-    originals_[upper(line.substr(kHead.size(), is - kHead.size()))] =
-        line.substr(is + kIs.size(), line.size() - is - kIs.size() - 1);
-  }
-  std::string original(const std::string& name) const {
-    const auto found = originals_.find(upper(name));
-    return found != originals_.end() ? found->second : name;
-  }
-
-  std::string parameter(std::string_view key) const {
-    const auto found = parameters_.find(std::string(key));
-    return found != parameters_.end() ? found->second : std::string();
-  }
-
-  void read_keyword() {
-    const auto& fields = deck_.fields();
-    const std::string keyword = fields.empty() ? std::string() : upper(fields[0]);
-    parameters_.clear();
-    for (std::size_t i = 1; i < fields.size(); ++i) {
-      const std::size_t equals = fields[i].find('=');
-      std::string_view value = equals == std::string_view::npos ? "" : trimmed(fields[i].substr(equals + 1));
-      if (value.size() >= 2 && value.front() == '"' && value.back() == '"') value = value.substr(1, value.size() - 2);
-      parameters_[upper(trimmed(fields[i].substr(0, equals)))] = value;
-    }
-    section_ = Section::kNone;
-    if (keyword == "*NODE" || keyword == "*ELEMENT") {
-      section_ = keyword == "*NODE" ? Section::kNodes : Section::kElements;
-      kind_ = keyword == "*NODE" ? ElementKind{} : kind_of(upper(parameter("TYPE")));
-      set_name_ = parameter(keyword == "*NODE" ? "NSET" : "ELSET");
-      pending_.clear();
-    } else if (keyword == "*NSET" || keyword == "*ELSET") {
-      section_ = keyword == "*NSET" ? Section::kNodeSet : Section::kElementSet;
-      set_name_ = parameter(keyword.substr(1));
-      if (set_name_.empty()) deck_.fail(fmt::format("{} has no name: {}=NAME is missing", keyword, keyword.substr(1)));
-      sets().at(set_name_);
-    } else if (keyword == "*SURFACE" && (parameter("TYPE").empty() || upper(parameter("TYPE")) == "ELEMENT")) {
-      section_ = Section::kSurface;
-      surfaces_.push_back({parameter("NAME"), {}});
-    } else if (keyword == "*INCLUDE") {
-      raw_.notes.push_back(fmt::format("*INCLUDE is not followed: {} was not read", one_word(parameter("INPUT"))));
-    }
-    generate_ = parameters_.contains("GENERATE");
-  }
-
   static std::string one_word(const std::string& text) { return in_quotes(text); }
 
-  Sets& sets() { return section_ == Section::kNodeSet || section_ == Section::kNodes ? node_sets_ : element_sets_; }
-
-  /// Nodes of an element of that type that is kept, and whether it is a solid. 0: not kept.
-  struct ElementKind {
-    std::size_t nodes = 0;
-    bool is_solid = false;
-  };
-  static ElementKind kind_of(std::string_view type) {
-    if (const std::size_t solid = nodes_of_solid(type); solid > 0) return {solid, true};
-    return {nodes_of_shell(type), false};
-  }
-  static std::size_t nodes_of_solid(std::string_view type) {
-    const auto is = [&](std::string_view head) { return type.starts_with(head); };
-    if (is("C3D15V")) return 0;
-    if (is("C3D15") || is("DC3D15") || is("AC3D15")) return 15;
-    if (is("C3D6") || is("DC3D6") || is("AC3D6")) return 6;
-    if (is("C3D5") || is("DC3D5") || is("AC3D5")) return 5;
-    if (is("C3D10") || is("DC3D10") || is("AC3D10")) return 10;
-    if (is("C3D4") || is("DC3D4") || is("AC3D4")) return 4;
-    return 0;
-  }
-  static std::size_t nodes_of_shell(std::string_view type) {
-    const auto is = [&](std::string_view head) { return type.starts_with(head); };
-    if (is("S4") || is("M3D4") || is("SFM3D4") || type == "DS4") return 4;
-    if (is("S8R") || is("M3D8") || is("SFM3D8") || type == "DS8") return 8;
-    if (type == "STRI65" || type == "M3D6" || type == "SFM3D6" || type == "S6" || type == "DS6" || type == "CPS6")
-      return 6;
-    if (type == "S3" || type == "S3R" || type == "STRI3" || type == "M3D3" || type == "SFM3D3" || type == "DS3" ||
-        type == "CPS3")
-      return 3;
-    return 0;
+  std::string original(const std::string& name) const {
+    const auto found = deck_.originals.find(upper(name));
+    return found != deck_.originals.end() ? found->second : name;
   }
 
-  void read_data() {
-    const auto& fields = deck_.fields();
-    switch (section_) {
-      case Section::kNodes:
-        return read_node(fields);
-      case Section::kElements:
-        return read_element(fields);
-      case Section::kNodeSet:
-      case Section::kElementSet:
-        return read_set(fields);
-      case Section::kSurface:
-        return read_side(fields);
-      default:
-        return;
+  void make_scopes() {
+    scopes_.emplace_back().blocks.push_back(&deck_.assembly);
+    // A deck may have parts and no assembly: each part stands where it is.
+    if (deck_.instances.empty())
+      for (const DeckBlock& part : deck_.parts) deck_.instances.push_back({part.name, part.name, {}, {}});
+    std::set<const DeckBlock*> used;
+    for (const DeckInstance& instance : deck_.instances) {
+      DeckScope& scope = scopes_.emplace_back();
+      scope.name = upper(instance.name);
+      scope.instance = &instance;
+      const DeckBlock* part = part_named(instance.part);
+      if (part == nullptr && instance.own.points.empty())
+        raw_.notes.push_back(fmt::format("the deck has no part {}: the instance {} is left out",
+                                         one_word(instance.part), one_word(instance.name)));
+      if (part != nullptr) scope.blocks.push_back(part), used.insert(part);
+      scope.blocks.push_back(&instance.own);
+    }
+    for (const DeckBlock& part : deck_.parts)
+      if (!used.contains(&part) && !part.points.empty())
+        raw_.notes.push_back(fmt::format("the part {} has no instance: it is left out", one_word(part.name)));
+    check_size();
+  }
+
+  /// A few words make another instance of a large part.
+  void check_size() const {
+    constexpr std::uint64_t kItemsPerByte = 64, kAlways = 1 << 16;
+    std::uint64_t items = 0;
+    for (const DeckScope& scope : scopes_)
+      for (const DeckBlock* block : scope.blocks) items += block->points.size() + block->nodes_of.size();
+    if (items > kItemsPerByte * deck_.bytes + kAlways || items >= kNone)
+      input_.fail("the instances make more nodes and elements than such a file can need");
+  }
+
+  const DeckBlock* part_named(const std::string& name) const {
+    const std::string wanted = upper(name);
+    const auto found = std::find_if(deck_.parts.begin(), deck_.parts.end(),
+                                    [&](const DeckBlock& part) { return upper(part.name) == wanted; });
+    return found == deck_.parts.end() ? nullptr : &*found;
+  }
+
+  void add_nodes(DeckScope& scope) {
+    for (const DeckBlock* block : scope.blocks)
+      for (std::size_t i = 0; i < block->points.size(); ++i) {
+        if (!scope.nodes.add(block->node_ids[i]))
+          input_.fail(fmt::format("a second node {}; the file is damaged", block->node_ids[i]));
+        scope.points.push_back(static_cast<VertexIndex>(raw_.points.size()));
+        raw_.points.push_back(scope.instance ? scope.instance->place.of(block->points[i]) : block->points[i]);
+      }
+  }
+
+  void add_elements(DeckScope& scope, const DeckBlock& block) {
+    std::array<VertexIndex, 20> nodes;
+    for (const DeckBlock::Element& element : block.elements) {
+      for (std::size_t k = 0; k < element.kind.nodes; ++k)
+        nodes[k] = node(scope, block.nodes_of[element.first + k], element.id);
+      const auto all = std::span<const VertexIndex>(nodes).first(element.kind.nodes);
+      element.kind.is_solid ? add_solid(scope, element.id, all) : add_shell(scope, element.id, all);
     }
   }
 
-  void read_node(const std::vector<std::string_view>& fields) {
-    if (fields.size() < 2) deck_.fail("expected a node: its number and coordinates");
-    const std::int64_t id = deck_.integer(fields[0], "the number of a node");
-    std::array<double, 3> xyz{};
-    for (std::size_t i = 0; i < 3 && i + 1 < fields.size(); ++i) xyz[i] = deck_.real(fields[i + 1]);
-    if (!node_ids_.add(id)) deck_.fail(fmt::format("a second node {}; the file is damaged", id));
-    raw_.points.push_back({xyz[0], xyz[1], xyz[2]});
-    if (!set_name_.empty()) sets().at(set_name_).ids.push_back(id);
+  VertexIndex node(const DeckScope& scope, std::int64_t id, std::int64_t element) const {
+    const std::uint32_t v = scope.nodes.find(id);
+    if (v != kNone) return scope.points[v];
+    std::string why = fmt::format("element {} has the node {}, which the file lacks", element, id);
+    for (const std::string& note : deck_.notes) why += "; " + note;
+    input_.fail(why);
   }
 
-  void read_element(const std::vector<std::string_view>& fields) {
-    if (kind_.nodes == 0) {
-      // The lines of an element of another kind: counted by those that do not go on.
-      raw_.other_elements += !deck_.line().ends_with(',');
-      return;
-    }
-    for (const std::string_view field : fields) pending_.push_back(deck_.integer(field, "a number of an element"));
-    const std::size_t count = kind_.nodes;
-    if (pending_.size() <= count) return;
-    if (pending_.size() > count + 1) deck_.fail(fmt::format("element {} has more than {} nodes", pending_[0], count));
-    std::array<VertexIndex, 15> nodes;
-    for (std::size_t k = 0; k < count; ++k) nodes[k] = node(pending_[k + 1]);
-    const std::int64_t id = pending_[0];
-    pending_.clear();
-    kind_.is_solid ? add_solid(id, std::span(nodes).first(count)) : add_shell(id, std::span(nodes).first(count));
-    if (!set_name_.empty()) sets().at(set_name_).ids.push_back(id);
-  }
-
-  void add_solid(std::int64_t id, std::span<const VertexIndex> nodes) {
-    if (!solid_ids_.add(id)) deck_.fail(fmt::format("a second element {}; the file is damaged", id));
-    Place place{static_cast<std::uint32_t>(raw_.tets.size()), 0, kNone};
+  void add_solid(DeckScope& scope, std::int64_t id, std::span<const VertexIndex> nodes) {
+    if (!scope.solids.add(id)) input_.fail(fmt::format("a second element {}; the file is damaged", id));
+    ElementPlace place{static_cast<std::uint32_t>(raw_.tets.size()), 0, kNone};
     if (nodes.size() == 4 || nodes.size() == 10) {
       raw_.add_tet(nodes, 0);
     } else {
       place.listed = static_cast<std::uint32_t>(listed_.size());
-      raw_.add_wide_cell(nodes, 0);
-      listed_.emplace_back(nodes.begin(), nodes.begin() + (nodes.size() == 5 ? 5 : 6));
+      const bool is_hexahedron = nodes.size() == 8 || nodes.size() == 20;
+      is_hexahedron ? raw_.add_hexahedron(nodes, 0) : raw_.add_wide_cell(nodes, 0);
+      listed_.emplace_back(nodes.begin(), nodes.begin() + (is_hexahedron ? 8 : nodes.size() == 5 ? 5 : 6));
     }
     place.last = static_cast<std::uint32_t>(raw_.tets.size());
-    solids_.push_back(place);
+    scope.solid_places.push_back(place);
   }
 
-  void add_shell(std::int64_t id, std::span<const VertexIndex> nodes) {
-    if (!shell_ids_.add(id)) return;
+  void add_shell(DeckScope& scope, std::int64_t id, std::span<const VertexIndex> nodes) {
+    if (!scope.shells.add(id)) return;
     const auto first = static_cast<std::uint32_t>(raw_.triangles.size());
     raw_.add_face(nodes, 0);
-    shells_.push_back({first, static_cast<std::uint32_t>(raw_.triangles.size()), kNone});
+    scope.shell_places.push_back({first, static_cast<std::uint32_t>(raw_.triangles.size()), kNone});
   }
 
-  VertexIndex node(std::int64_t id) {
-    const std::uint32_t v = node_ids_.find(id);
-    if (v == kNone) deck_.fail(fmt::format("there is no node {} (nodes must come before elements)", id));
-    return v;
+  std::size_t scope_named(const std::string& instance, std::size_t otherwise) const {
+    if (instance.empty()) return otherwise;
+    for (std::size_t s = 1; s < scopes_.size(); ++s)
+      if (scopes_[s].name == instance) return s;
+    return otherwise;
   }
 
-  /// A few words can ask for millions of members: all sets together have no more than a multiple of the file's bytes.
-  void spend(std::uint64_t members) {
+  const DeckSet* set_named(std::size_t scope, const std::string& name, bool of_nodes) const {
+    for (const DeckBlock* block : scopes_[scope].blocks)
+      if (const DeckSet* set = (of_nodes ? block->node_sets : block->element_sets).find(name)) return set;
+    return nullptr;
+  }
+
+  /// Sets of sets can ask for millions of members in a few words.
+  void spend(std::uint64_t members) const {
     constexpr std::uint64_t kMembersPerByte = 16, kAlways = 1 << 16;
-    const std::uint64_t most = kMembersPerByte * bytes_ + kAlways;
-    if (members > most || (spent_ += members) > most)
-      deck_.fail("the sets up to here have more members than such a file can need; write them out, without GENERATE");
+    if ((spent_ += members) > kMembersPerByte * deck_.bytes + kAlways)
+      input_.fail("the sets have more members than such a file can need; write them out, without GENERATE");
   }
 
-  void read_set(const std::vector<std::string_view>& fields) {
-    DeckSet& set = sets().at(set_name_);
-    if (generate_) {
-      if (fields.size() < 2) deck_.fail("expected the first and the last number, and the step");
-      const std::int64_t first = deck_.integer(fields[0], "a number"), last = deck_.integer(fields[1], "a number"),
-                         step = fields.size() > 2 ? deck_.integer(fields[2], "a step") : 1;
-      const std::uint64_t range = static_cast<std::uint64_t>(last) - static_cast<std::uint64_t>(first);
-      if (step < 1 || last < first) deck_.fail(fmt::format("the numbers {} to {} in steps of {}", first, last, step));
-      spend(range / static_cast<std::uint64_t>(step));
-      for (std::uint64_t i = 0; i <= range; i += static_cast<std::uint64_t>(step))
-        set.ids.push_back(first + static_cast<std::int64_t>(i));
-      return;
+  /// The numbers of a set and of those that it names, in all scopes; circles end.
+  std::vector<DeckItem> items_of(std::size_t scope, const DeckSet& set, bool of_nodes) const {
+    std::vector<DeckItem> items;
+    std::vector<std::pair<std::size_t, const DeckSet*>> todo{{scope, &set}};
+    std::set<std::pair<std::size_t, const DeckSet*>> seen{todo.front()};
+    while (!todo.empty()) {
+      const auto [here, next] = todo.back();
+      todo.pop_back();
+      for (const DeckMember& member : next->members) add_member(here, member, of_nodes, items, seen, todo);
     }
-    for (const std::string_view field : fields) {
-      if (field.empty()) continue;
-      if (const auto id = deck_.whole(field)) {
-        set.ids.push_back(*id);
-      } else {
-        set.names.emplace_back(field);
-      }
-    }
+    spend(items.size());
+    return items;
+  }
+  void add_member(std::size_t here, const DeckMember& member, bool of_nodes, std::vector<DeckItem>& items,
+                  std::set<std::pair<std::size_t, const DeckSet*>>& seen,
+                  std::vector<std::pair<std::size_t, const DeckSet*>>& todo) const {
+    const std::size_t at = scope_named(member.instance, here);
+    if (member.name.empty()) return items.push_back({at, member.id});
+    const DeckSet* const other = set_named(at, member.name, of_nodes);
+    if (other != nullptr && seen.insert({at, other}).second) todo.emplace_back(at, other);
+  }
+  /// The same of what a surface names.
+  std::vector<DeckItem> items_of(std::size_t scope, const DeckMember& named, bool of_nodes) const {
+    return items_of(scope, DeckSet{{}, false, {named}}, of_nodes);
   }
 
-  void read_side(const std::vector<std::string_view>& fields) {
-    if (fields.size() < 2 || fields[1].size() < 2 || (fields[1][0] != 'S' && fields[1][0] != 's')) return;
-    if (fields[1][1] < '1' || fields[1][1] > '5') return;
-    surfaces_.back().sides.emplace_back(fields[0], fields[1][1] - '1');
-  }
-
-  void finish_keyword() {
-    if (section_ == Section::kElements && !pending_.empty())
-      deck_.fail("an element has too few nodes; the file is truncated: copy or export it again");
-    section_ = Section::kNone;
-  }
-
-  void make_groups() {
-    // No references: regions and patches come from the groups.
-    raw_.tet_ref.clear();
-    raw_.triangle_ref.clear();
-    const auto add = [&](const DeckSet& set, const Sets& of, Kind kind, const IdMap& ids,
-                         const std::vector<Place>* places) {
-      const std::vector<std::int64_t> all = of.collect(set.name);
-      spend(all.size());
-      RawMesh::Group group{original(set.name), kind, {}};
-      for (const std::int64_t id : all)
-        if (const std::uint32_t i = ids.find(id); i != kNone) {
-          const Place place = places ? (*places)[i] : Place{i, i + 1, kNone};
-          for (std::uint32_t m = place.first; m < place.last; ++m) group.members.push_back(m);
-        }
-      if (!group.members.empty()) raw_.groups.push_back(std::move(group));
-    };
-    for (const DeckSet& set : element_sets_.all()) {
-      add(set, element_sets_, Kind::kElements, solid_ids_, &solids_);
-      add(set, element_sets_, Kind::kFaces, shell_ids_, &shells_);
-    }
-    for (const DeckSurface& surface : surfaces_) add_surface(surface);
-    for (const DeckSet& set : node_sets_.all()) add(set, node_sets_, Kind::kNodes, node_ids_, nullptr);
-    raw_.triangle_ref.clear();
-  }
-
-  void add_surface(const DeckSurface& surface) {
-    RawMesh::Group group{original(surface.name), Kind::kFaces, {}};
-    for (const auto& [elements, side] : surface.sides) {
-      const auto one = deck_.whole(elements);
-      const std::vector<std::int64_t> ids = one ? std::vector{*one} : element_sets_.collect(elements);
-      spend(ids.size());
-      for (const std::int64_t id : ids) {
-        const std::uint32_t s = solid_ids_.find(id);
-        if (s == kNone) continue;
-        const std::vector<VertexIndex> nodes = side_of(solids_[s], static_cast<std::size_t>(side));
-        if (nodes.size() < 3) continue;
-        for (std::uint32_t k = raw_.add_face(nodes, 0); k > 0; --k)
-          group.members.push_back(static_cast<std::uint32_t>(raw_.triangles.size()) - k);
-      }
+  /// Members of a group: nodes, tetrahedra or triangles.
+  void add_group(const std::string& name, Kind kind, const std::vector<DeckItem>& items) {
+    RawMesh::Group group{name, kind, {}};
+    for (const auto& [s, id] : items) {
+      const DeckScope& scope = scopes_[s];
+      const IdMap& ids = kind == Kind::kNodes ? scope.nodes : kind == Kind::kElements ? scope.solids : scope.shells;
+      const std::uint32_t i = ids.find(id);
+      if (i == kNone) continue;
+      const ElementPlace place = kind == Kind::kNodes      ? ElementPlace{scope.points[i], scope.points[i] + 1, kNone}
+                                 : kind == Kind::kElements ? scope.solid_places[i]
+                                                           : scope.shell_places[i];
+      for (std::uint32_t m = place.first; m < place.last; ++m) group.members.push_back(m);
     }
     if (!group.members.empty()) raw_.groups.push_back(std::move(group));
   }
 
-  /// Of an element: a range of tetrahedra or triangles; of a wedge or pyramid its nodes in `listed_`.
-  struct Place {
-    std::uint32_t first, last, listed;
+  /// Calls visit(scope, block) for each block of each scope.
+  template <class Visit>
+  void for_each_block(const Visit& visit) {
+    for (std::size_t s = 0; s < scopes_.size(); ++s)
+      for (const DeckBlock* block : scopes_[s].blocks) visit(s, *block);
+  }
+
+  /// Where several instances have a name, "INSTANCE.NAME".
+  std::string name_in(std::size_t scope, const std::string& name) const {
+    const bool is_unique = uses_.at(upper(name)) < 2;
+    return is_unique || scope == 0 ? original(name) : scopes_[scope].instance->name + "." + original(name);
+  }
+
+  void count_names() {
+    for_each_block([&](std::size_t s, const DeckBlock& block) {
+      std::set<std::string> here;
+      for (const auto* sets : {&block.node_sets, &block.element_sets})
+        for (const DeckSet& set : sets->all()) here.insert(upper(set.name));
+      for (const DeckSurface& surface : block.surfaces) {
+        here.insert(upper(surface.name));
+        for (const DeckSide& side : surface.sides) in_surfaces_.insert(upper(side.elements.name));
+      }
+      for (const std::string& name : here) uses_[name] += s > 0 ? 1 : 0;
+    });
+  }
+
+  /// Sets that Abaqus makes for the sides of a surface are the surface.
+  bool is_shown(const DeckSet& set) const { return !set.is_internal || !in_surfaces_.contains(upper(set.name)); }
+
+  void add_instances() {
+    if (deck_.instances.size() < 2) return;
+    for (const DeckScope& scope : scopes_) {
+      if (scope.solid_places.empty() || scope.instance == nullptr) continue;
+      RawMesh::Group group{scope.instance->name, Kind::kElements, {}};
+      for (std::uint32_t t = scope.solid_places.front().first; t < scope.solid_places.back().last; ++t)
+        group.members.push_back(t);
+      raw_.groups.push_back(std::move(group));
+    }
+  }
+
+  void make_groups() {
+    count_names();
+    add_instances();
+    for_each_block([&](std::size_t s, const DeckBlock& block) {
+      for (const DeckSet& set : block.element_sets.all()) {
+        if (!is_shown(set)) continue;
+        const std::vector<DeckItem> items = items_of(s, set, false);
+        add_group(name_in(s, set.name), Kind::kElements, items);
+        add_group(name_in(s, set.name), Kind::kFaces, items);
+      }
+    });
+    for_each_block([&](std::size_t s, const DeckBlock& block) {
+      for (const DeckSurface& surface : block.surfaces) add_surface(s, surface);
+    });
+    for_each_block([&](std::size_t s, const DeckBlock& block) {
+      for (const DeckSet& set : block.node_sets.all())
+        if (is_shown(set)) add_group(name_in(s, set.name), Kind::kNodes, items_of(s, set, true));
+    });
+    // No references: regions and patches come from the groups.
+    raw_.tet_ref.clear();
+    raw_.triangle_ref.clear();
+  }
+
+  void add_surface(std::size_t s, const DeckSurface& surface) {
+    const std::string name = name_in(s, surface.name);
+    if (surface.of_nodes) {
+      std::vector<DeckItem> items;
+      for (const DeckSide& side : surface.sides)
+        for (const DeckItem& item : items_of(s, side.elements, true)) items.push_back(item);
+      return add_group(name, Kind::kNodes, items);
+    }
+    RawMesh::Group group{name, Kind::kFaces, {}};
+    for (const DeckSide& side : surface.sides)
+      for (const DeckItem& item : items_of(s, side.elements, false)) add_sides(item, side.side, group);
+    if (!group.members.empty()) raw_.groups.push_back(std::move(group));
+  }
+
+  void add_sides(const DeckItem& item, int side, RawMesh::Group& group) {
+    const DeckScope& scope = scopes_[item.scope];
+    const std::uint32_t solid = scope.solids.find(item.id), shell = scope.shells.find(item.id);
+    if (solid == kNone && shell != kNone) {
+      for (std::uint32_t f = scope.shell_places[shell].first; f < scope.shell_places[shell].last; ++f)
+        group.members.push_back(f);
+    } else if (solid != kNone && side >= 0) {
+      add_side(side_of(scope.solid_places[solid], static_cast<std::size_t>(side)), group);
+    } else if (solid != kNone && side == DeckSide::kFree) {
+      const ElementPlace& place = scope.solid_places[solid];
+      for (std::size_t k = 0; k < (place.listed == kNone ? 4 : 6); ++k)
+        if (const auto nodes = side_of(place, k); is_free(nodes)) add_side(nodes, group);
+    }
+  }
+
+  void add_side(const std::vector<VertexIndex>& nodes, RawMesh::Group& group) {
+    if (nodes.size() < 3) return;
+    for (std::uint32_t k = raw_.add_face(nodes, 0); k > 0; --k)
+      group.members.push_back(static_cast<std::uint32_t>(raw_.triangles.size()) - k);
+  }
+
+  /// Whether a side is no other element's, which its triangles tell.
+  bool is_free(const std::vector<VertexIndex>& nodes) {
+    if (free_.empty())
+      for (const Triangle& t : boundary_of(raw_.tets, raw_.points.size())) free_.insert(t);
+    return free_.has_face(nodes);
+  }
+
+  /// Faces of one tetrahedron only.
+  struct FreeFaces {
+    std::set<Triangle> faces;
+
+    bool empty() const { return faces.empty(); }
+    void insert(Triangle t) {
+      std::sort(t.begin(), t.end());
+      faces.insert(t);
+    }
+    /// A triangle, or a quadrilateral by either of its diagonals.
+    bool has_face(const std::vector<VertexIndex>& nodes) const {
+      const auto has = [&](std::size_t i, std::size_t j, std::size_t k) {
+        Triangle t{nodes[i], nodes[j], nodes[k]};
+        std::sort(t.begin(), t.end());
+        return faces.contains(t);
+      };
+      if (nodes.size() < 3) return false;
+      return has(0, 1, 2) || (nodes.size() == 4 && has(0, 1, 3));
+    }
   };
 
   /// The corners of a side; of a wedge that stands for a pyramid each once.
-  std::vector<VertexIndex> side_of(const Place& solid, std::size_t side) const {
+  std::vector<VertexIndex> side_of(const ElementPlace& solid, std::size_t side) const {
     std::vector<VertexIndex> nodes;
     const auto add = [&](VertexIndex v) {
       if (std::find(nodes.begin(), nodes.end(), v) == nodes.end()) nodes.push_back(v);
     };
     if (solid.listed != kNone) {
       const std::vector<VertexIndex>& of = listed_[solid.listed];
-      for (const std::size_t k : (of.size() == 6 ? kWedgeFaces : kPyramidFaces)[side]) add(of[k]);
+      const std::span<const std::array<std::size_t, 4>> sides =
+          of.size() == 8   ? std::span<const std::array<std::size_t, 4>>(kHexahedronFaces)
+          : of.size() == 6 ? std::span<const std::array<std::size_t, 4>>(kWedgeFaces)
+                           : std::span<const std::array<std::size_t, 4>>(kPyramidFaces);
+      if (side >= sides.size()) return nodes;
+      for (const std::size_t k : sides[side]) add(of[k]);
     } else if (side < kLacks.size()) {
       for (const int k : kTetFaces[static_cast<std::size_t>(kLacks[side])])
         add(raw_.tets[solid.first][static_cast<std::size_t>(k)]);
@@ -427,21 +372,15 @@ class Abaqus {
     return nodes;
   }
 
-  Deck deck_;
-  std::uint64_t bytes_, spent_ = 0;
+  const Input& input_;
+  DeckModel deck_;
   RawMesh raw_;
-  Section section_ = Section::kNone;
-  std::map<std::string, std::string> parameters_;  ///< of the keyword
-  std::map<std::string, std::string> originals_;
-  std::string set_name_;
-  ElementKind kind_;  ///< of the elements that are read
-  bool generate_ = false;
-  std::vector<std::int64_t> pending_;  ///< numbers of the element so far
-  IdMap node_ids_, solid_ids_, shell_ids_;
-  std::vector<Place> solids_, shells_;
+  std::vector<DeckScope> scopes_;
   std::vector<std::vector<VertexIndex>> listed_;
-  Sets node_sets_, element_sets_;
-  std::vector<DeckSurface> surfaces_;
+  std::map<std::string, std::size_t> uses_;  ///< of names, by instances
+  std::set<std::string> in_surfaces_;        ///< names of sets
+  FreeFaces free_;
+  mutable std::uint64_t spent_ = 0;  ///< members of sets so far
 };
 
 }  // namespace

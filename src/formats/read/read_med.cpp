@@ -23,19 +23,29 @@ struct MedCell {
   std::string_view name;
   Kind kind;
   std::size_t nodes;
-  std::array<std::uint8_t, 15> order;  ///< places of our nodes in MED's list
+  std::array<std::uint8_t, 27> order;  ///< places of our nodes in MED's list
 };
-constexpr std::array<std::uint8_t, 15> of_pyramid() {
-  std::array<std::uint8_t, 15> order{};
-  for (std::size_t k = 0; k < kMedWide.pyramid.size(); ++k) order[k] = kMedWide.pyramid[k];
+template <std::size_t N>
+constexpr std::array<std::uint8_t, 27> widened(const std::array<std::uint8_t, N>& places) {
+  std::array<std::uint8_t, 27> order{};
+  for (std::size_t k = 0; k < N; ++k) order[k] = places[k];
+  return order;
+}
+/// The corners; nodes behind them are not asked for.
+constexpr std::array<std::uint8_t, 27> of_hexahedron() {
+  std::array<std::uint8_t, 27> order{0, 3, 2, 1, 4, 7, 6, 5};
+  for (std::uint8_t k = 8; k < 27; ++k) order[k] = k;
   return order;
 }
 constexpr std::array kMedCells{MedCell{"TE4", Kind::kElements, 4, {0, 2, 1, 3}},
                                MedCell{"T10", Kind::kElements, 10, {0, 2, 1, 3, 6, 5, 4, 7, 9, 8}},
-                               MedCell{"PE6", Kind::kElements, 6, kMedWide.wedge},
-                               MedCell{"P15", Kind::kElements, 15, kMedWide.wedge},
-                               MedCell{"PY5", Kind::kElements, 5, of_pyramid()},
-                               MedCell{"P13", Kind::kElements, 13, of_pyramid()},
+                               MedCell{"PE6", Kind::kElements, 6, widened(kMedWide.wedge)},
+                               MedCell{"P15", Kind::kElements, 15, widened(kMedWide.wedge)},
+                               MedCell{"PY5", Kind::kElements, 5, widened(kMedWide.pyramid)},
+                               MedCell{"P13", Kind::kElements, 13, widened(kMedWide.pyramid)},
+                               MedCell{"HE8", Kind::kElements, 8, of_hexahedron()},
+                               MedCell{"H20", Kind::kElements, 20, of_hexahedron()},
+                               MedCell{"H27", Kind::kElements, 27, of_hexahedron()},
                                MedCell{"QU4", Kind::kFaces, 4, {0, 1, 2, 3}},
                                MedCell{"QU8", Kind::kFaces, 8, {0, 1, 2, 3, 4, 5, 6, 7}},
                                MedCell{"TR3", Kind::kFaces, 3, {0, 1, 2}},
@@ -54,8 +64,10 @@ class Med {
     mesh_ = "/ENS_MAA/" + meshes[0];
     const auto steps = file_.members(mesh_);
     if (steps.empty()) file_.fail("has a mesh without any step; the file is damaged");
-    step_ = mesh_ + "/" + steps[0];
-    families_ = "/FAS/" + meshes[0];
+    // Before MED 3 a mesh has no steps, and its families are its own.
+    const bool is_old = file_.has(mesh_ + "/NOE/COO");
+    step_ = is_old ? mesh_ : mesh_ + "/" + steps[0];
+    families_ = is_old ? mesh_ + "/FAS" : "/FAS/" + meshes[0];
     read_nodes();
     read_families();
     for (const std::string& type : file_.members(step_ + "/MAI")) read_cells(type);
@@ -69,7 +81,9 @@ class Med {
   void read_nodes() {
     const std::vector<double> xyz = file_.reals(step_ + "/NOE/COO");
     const std::size_t n = xyz.size() / 3;
-    if (xyz.size() % 3 != 0 || n >= kNone) file_.fail("has coordinates that are not of dimension 3");
+    if (const std::int64_t nodes = file_.integer_attribute(step_ + "/NOE/COO", "NBR");
+        xyz.size() % 3 != 0 || n >= kNone || static_cast<std::uint64_t>(nodes) != n)
+      file_.fail(fmt::format("has {} coordinates of {} nodes: it is of another dimension than 3", xyz.size(), nodes));
     for (std::size_t v = 0; v < n; ++v) {
       const Vec3 p{xyz[v], xyz[n + v], xyz[2 * n + v]};
       if (!is_finite(p)) file_.fail(fmt::format("node {} is ({}, {}, {}), which is no place", v + 1, p.x, p.y, p.z));
@@ -125,7 +139,7 @@ class Med {
     if (nodes.size() % type->nodes != 0) file_.fail(fmt::format("{} is no multiple of {}", path, type->nodes));
     std::vector<std::int64_t> family;
     if (file_.has(path + "/FAM")) family = file_.integers(path + "/FAM");
-    std::array<VertexIndex, 15> all;
+    std::array<VertexIndex, 27> all;
     for (std::size_t i = 0; i < count; ++i) {
       for (std::size_t k = 0; k < type->nodes; ++k) {
         const std::int64_t v = nodes[k * count + i];
@@ -154,6 +168,8 @@ class Med {
       raw_.edges.push_back({nodes[0], nodes[1]});
     } else if (nodes.size() == 4 || nodes.size() == 10) {
       raw_.add_tet(nodes, 0);
+    } else if (nodes.size() == 8 || nodes.size() >= 20) {
+      raw_.add_hexahedron(nodes, 0);
     } else {
       raw_.add_wide_cell(nodes, 0);
     }

@@ -1,6 +1,7 @@
 // Gmsh MSH 4.1 and 2.2, text and binary. Points, edges, triangles and tetrahedra are kept, linear or quadratic, and
-// quadrilaterals as two triangles; their references are the first physical group of their entity, or the entity's own
-// tag where it has none; further groups are sets, groups of points sets of nodes. All in the order of their tags.
+// quadrilaterals as two triangles. A physical group that overlaps none of a lower tag is a reference; others are sets,
+// groups of points sets of nodes. What is in no group that is a reference has the tag of its entity, or one that is
+// free. All in the order of their tags.
 
 #include "base/mesh/renumber.h"
 #include "formats/parts/msh_stream.h"
@@ -13,6 +14,7 @@
 #include <array>
 #include <map>
 #include <numeric>
+#include <set>
 #include <span>
 #include <string>
 #include <utility>
@@ -40,23 +42,54 @@ int kept_dimension(std::int64_t type) {
       return 0;
     case 1:
     case 8:
+    case 26:
+    case 27:
+    case 28:
       return 1;
     case 2:
     case 3:
     case 9:
     case 10:
     case 16:
+    case 20:
+    case 21:
+    case 22:
+    case 23:
+    case 24:
+    case 25:
       return 2;
     case 4:
+    case 5:
     case 6:
     case 7:
     case 11:
+    case 12:
+    case 13:
+    case 14:
+    case 17:
     case 18:
     case 19:
+    case 29:
+    case 30:
+    case 31:
       return 3;
     default:
       return -1;
   }
+}
+
+/// So many of the nodes of an element are asked for: of elements of order 3 and more the corners, and none in the
+/// middle of faces.
+std::size_t kept_nodes(std::int64_t type) {
+  if (type >= 26 && type <= 28) return 2;
+  if (type >= 20 && type <= 25) return 3;
+  if (type >= 29 && type <= 31) return 4;
+  if (type == 13) return 15;
+  if (type == 14) return 13;
+  return nodes_of_type(type);
+}
+bool is_of_high_order(std::int64_t type) {
+  return type >= 20 && type <= 31;
 }
 
 /// From the tags of nodes, which may have gaps and any order, to indices.
@@ -127,9 +160,12 @@ class Msh {
     }
     if (!has_elements_)
       input_.fail("has no section $Elements; it is truncated or holds no mesh: copy or export it again");
+    unite_equal_elements();
     finish_groups();
     finish_field();
     sort_by_tags();
+    if (high_order_ > 0)
+      raw_.notes.push_back(fmt::format("{} elements of order 3 and more are taken as linear", high_order_));
     raw_.format = version_ == 4 ? "Gmsh MSH 4.1" : "Gmsh MSH 2.2";
     return std::move(raw_);
   }
@@ -163,8 +199,10 @@ class Msh {
       const std::int64_t dimension = text.integer("the dimension of a physical group");
       const std::int64_t tag = text.integer("the tag of a physical group");
       std::string_view name = text.rest_of_line();
-      if (name.size() < 2 || name.front() != '"' || name.back() != '"') text.fail_expected("a name in quotes");
-      name = name.substr(1, name.size() - 2);
+      // Some programs put words of their own behind the name.
+      const std::size_t last = name.rfind('"');
+      if (last == 0 || last == std::string_view::npos || name.front() != '"') text.fail_expected("a name in quotes");
+      name = name.substr(1, last - 1);
       if (dimension >= 0 && dimension < 4) names_[{static_cast<int>(dimension), tag}] = name;
     }
   }
@@ -264,21 +302,39 @@ class Msh {
     return v;
   }
 
-  /// An element of a kept type; `groups` beyond the first one are sets, and all of those of points.
+  /// An entity, or what of it is in the same groups: all that elements know of where they belong.
+  struct Place {
+    std::int64_t entity;
+    std::vector<std::int64_t> groups;  ///< ascending
+    friend auto operator<=>(const Place&, const Place&) = default;
+  };
+  /// A number for it, which stands for the reference until all are known.
+  std::int64_t place_of(int dimension, Place place) {
+    std::sort(place.groups.begin(), place.groups.end());
+    place.groups.erase(std::unique(place.groups.begin(), place.groups.end()), place.groups.end());
+    auto& places = places_[static_cast<std::size_t>(dimension)];
+    return static_cast<std::int64_t>(places.try_emplace(std::move(place), places.size()).first->second);
+  }
+
+  /// An element of a kept type.
   template <class Tag>
   void add_element(std::int64_t type, std::uint64_t tag, std::int64_t ref, std::span<const std::int64_t> groups,
                    const Tag& next_tag) {
-    std::array<VertexIndex, 15> nodes, ours;
+    std::array<VertexIndex, 128> nodes;
+    std::array<VertexIndex, 15> ours;
     const std::size_t count = nodes_of_type(type);
     for (std::size_t i = 0; i < count; ++i) nodes[i] = node(next_tag());
-    const std::span<const VertexIndex> all = std::span(nodes).first(count);
+    const std::span<const VertexIndex> all = std::span(nodes).first(kept_nodes(type));
+    high_order_ += is_of_high_order(type);
     const int dimension = kept_dimension(type);
     const auto d = static_cast<std::size_t>(dimension);
     std::uint32_t index = nodes[0], parts = 1;
     if (dimension == 3) {
       index = static_cast<std::uint32_t>(raw_.tets.size());
-      if (type == 4 || type == 11)
+      if (all.size() == 4 || all.size() == 10)
         raw_.add_tet(all, ref, kGmshMids);
+      else if (type == 5 || type == 12 || type == 17)
+        parts = raw_.add_hexahedron(all, ref, tags_.tags());
       else
         parts = raw_.add_wide_cell(in_our_order(all, kGmshWide, ours), ref, tags_.tags());
     } else if (dimension == 2) {
@@ -289,9 +345,8 @@ class Msh {
       raw_.edges.push_back({nodes[0], nodes[1]});
       raw_.edge_ref.push_back(ref);
     }
-    if (dimension > 0) element_tags_[d].insert(element_tags_[d].end(), parts, tag);
-    for (const std::int64_t group : groups.subspan(std::min<std::size_t>(dimension > 0, groups.size())))
-      for (std::uint32_t k = 0; k < parts; ++k) members_[{dimension, group}].push_back(index + k);
+    if (dimension > 0) return static_cast<void>(element_tags_[d].insert(element_tags_[d].end(), parts, tag));
+    for (const std::int64_t group : groups) node_groups_[group].push_back(index);
   }
 
   std::string name_of(int dimension, std::int64_t group) const {
@@ -305,9 +360,113 @@ class Msh {
       if (key.first == 2) raw_.surface_names[key.second] = name;
       if (key.first == 3) raw_.region_names[key.second] = name;
     }
-    for (auto& [key, members] : members_)
+    for (auto& [tag, members] : node_groups_)
+      raw_.groups.push_back({name_of(0, tag), NamedSet::Kind::kNodes, std::move(members)});
+    finish_groups(1, raw_.edge_ref);
+    finish_groups(2, raw_.triangle_ref);
+    finish_groups(3, raw_.tet_ref);
+  }
+
+  /// Physical groups of a dimension that overlap none of a lower tag.
+  std::set<std::int64_t> groups_apart(int dimension) const {
+    std::set<std::int64_t> all, apart;
+    const auto& places = places_[static_cast<std::size_t>(dimension)];
+    for (const auto& [place, number] : places) all.insert(place.groups.begin(), place.groups.end());
+    for (const std::int64_t group : all) {
+      const auto overlaps = [&](const auto& entry) {
+        const auto& groups = entry.first.groups;
+        return std::binary_search(groups.begin(), groups.end(), group) &&
+               std::any_of(groups.begin(), groups.end(), [&](std::int64_t g) { return apart.contains(g); });
+      };
+      if (std::none_of(places.begin(), places.end(), overlaps)) apart.insert(group);
+    }
+    return apart;
+  }
+
+  /// References and sets of what the places of elements are.
+  void finish_groups(int dimension, std::vector<std::int64_t>& refs) {
+    const auto& places = places_[static_cast<std::size_t>(dimension)];
+    const std::set<std::int64_t> apart = groups_apart(dimension);
+    std::set<std::int64_t> taken = apart;
+    for (const auto& [place, number] : places) taken.insert(place.groups.begin(), place.groups.end());
+    std::int64_t free = taken.empty() ? 1 : *taken.rbegin() + 1;
+    for (const auto& [place, number] : places) free = std::max(free, place.entity + 1);
+    std::vector<std::int64_t> ref_of(places.size());
+    std::vector<std::vector<std::int64_t>> sets_of(places.size());
+    for (const auto& [place, number] : places) {
+      std::int64_t& ref = ref_of[number] = kNone;
+      for (const std::int64_t group : place.groups)
+        apart.contains(group) ? static_cast<void>(ref = group) : sets_of[number].push_back(group);
+      if (ref == kNone) ref = taken.insert(place.entity).second ? place.entity : free++;
+    }
+    std::map<std::int64_t, std::vector<std::uint32_t>> sets;
+    for (std::uint32_t i = 0; i < refs.size(); ++i) {
+      const auto number = static_cast<std::size_t>(refs[i]);
+      for (const std::int64_t group : sets_of[number]) sets[group].push_back(i);
+      refs[i] = ref_of[number];
+    }
+    for (auto& [tag, members] : sets)
       raw_.groups.push_back(
-          {name_of(key.first, key.second), kKindOfDimension[static_cast<std::size_t>(key.first)], std::move(members)});
+          {name_of(dimension, tag), kKindOfDimension[static_cast<std::size_t>(dimension)], std::move(members)});
+  }
+
+  /// Version 2 lists the elements of an entity once for each of its groups: equal ones are in all of them. Returns for
+  /// each the first that is equal.
+  template <class Row>
+  std::vector<std::uint32_t> unite_equal(int dimension, const std::vector<Row>& rows, std::vector<std::int64_t>& refs) {
+    auto& places = places_[static_cast<std::size_t>(dimension)];
+    std::vector<const Place*> place_at(places.size());
+    for (const auto& [place, number] : places) place_at[number] = &place;
+    std::map<Row, std::uint32_t> first_of;
+    std::vector<std::uint32_t> first(rows.size());
+    std::map<std::uint32_t, Place> united;
+    for (std::uint32_t i = 0; i < rows.size(); ++i) {
+      Row key = rows[i];
+      std::sort(key.begin(), key.end());
+      first[i] = first_of.try_emplace(key, i).first->second;
+      if (first[i] == i) continue;
+      const auto place = [&](std::uint32_t k) { return *place_at[static_cast<std::size_t>(refs[k])]; };
+      Place& all = united.try_emplace(first[i], place(first[i])).first->second;
+      const std::vector<std::int64_t> more = place(i).groups;
+      all.groups.insert(all.groups.end(), more.begin(), more.end());
+    }
+    for (auto& [i, place] : united) refs[i] = place_of(dimension, std::move(place));
+    for (std::uint32_t i = 0; i < rows.size(); ++i) refs[i] = refs[first[i]];
+    // Places of no element are none.
+    std::set<std::int64_t> used(refs.begin(), refs.end());
+    std::map<Place, std::size_t> left;
+    std::vector<std::int64_t> now(places.size());
+    for (const auto& [place, number] : places)
+      if (used.contains(static_cast<std::int64_t>(number))) {
+        now[number] = static_cast<std::int64_t>(left.size());
+        left.emplace(place, left.size());
+      }
+    for (std::int64_t& ref : refs) ref = now[static_cast<std::size_t>(ref)];
+    places = std::move(left);
+    return first;
+  }
+
+  void unite_equal_elements() {
+    if (is_in_several_groups_[1]) unite_equal(1, raw_.edges, raw_.edge_ref);
+    if (is_in_several_groups_[2]) unite_equal(2, raw_.triangles, raw_.triangle_ref);
+    if (is_in_several_groups_[3]) drop_equal_tets(unite_equal(3, raw_.tets, raw_.tet_ref));
+  }
+
+  void drop_equal_tets(const std::vector<std::uint32_t>& first) {
+    std::vector<std::uint32_t> now(first.size(), kNone);
+    std::uint32_t kept = 0;
+    for (std::uint32_t t = 0; t < first.size(); ++t) {
+      if (first[t] != t) continue;
+      now[t] = kept;
+      raw_.tets[kept] = raw_.tets[t], raw_.tet_ref[kept] = raw_.tet_ref[t];
+      element_tags_[3][kept] = element_tags_[3][t];
+      if (!raw_.mid_nodes.empty()) raw_.mid_nodes[kept] = raw_.mid_nodes[t];
+      ++kept;
+    }
+    raw_.tets.resize(kept), raw_.tet_ref.resize(kept), element_tags_[3].resize(kept);
+    if (!raw_.mid_nodes.empty()) raw_.mid_nodes.resize(kept);
+    std::erase_if(raw_.wide_cells, [&](const WideCell& cell) { return now[cell.first] == kNone; });
+    for (WideCell& cell : raw_.wide_cells) cell.first = now[cell.first];
   }
 
   /// From places to places in the order of the tags; empty if they are in order.
@@ -508,12 +667,13 @@ class Msh {
       const std::span<const std::int64_t> groups =
           physical == physical_.end() ? std::span<const std::int64_t>() : physical->second;
       const auto parent = parent_.find({static_cast<int>(dimension), entity});
-      const std::int64_t ref = !groups.empty() ? groups[0] : parent == parent_.end() ? entity : parent->second;
+      const std::int64_t whole = parent == parent_.end() ? entity : parent->second;
       if (kept_dimension(type) < 0) {
         raw_.other_elements += count;
         in_.skip_size(count * (nodes + 1));
         continue;
       }
+      const std::int64_t ref = place_of(kept_dimension(type), {whole, {groups.begin(), groups.end()}});
       for (std::uint64_t i = 0; i < count; ++i) {
         const std::uint64_t tag = in_.size("the tag of an element");
         add_element(type, tag, ref, groups, [this] { return in_.size("a node of an element"); });
@@ -533,8 +693,18 @@ class Msh {
       in_.skip_int32(known_nodes_of_type(type));
       return;
     }
+    // The sign tells the orientation of the entity in its group.
+    tags[0] = std::abs(tags[0]);
+    const int dimension = kept_dimension(type);
     const std::span<const std::int64_t> groups(tags.data(), tags[0] != 0);
-    add_element(type, number, tags[0] != 0 ? tags[0] : tags[1], groups,
+    const auto [known, is_new] = group_of_entity_.try_emplace({dimension, tags[1]}, tags[0]);
+    if (known->second != tags[0]) is_in_several_groups_[static_cast<std::size_t>(dimension)] = true;
+    // Consecutive elements mostly share a place.
+    if (const std::array<std::int64_t, 3> here{dimension, tags[0], tags[1]}; here != last_place_ || last_ref_ < 0) {
+      last_place_ = here;
+      last_ref_ = place_of(dimension, {tags[1], {groups.begin(), groups.end()}});
+    }
+    add_element(type, number, last_ref_, groups,
                 [this] { return static_cast<std::uint64_t>(in_.int32("a node of an element")); });
   }
 
@@ -563,11 +733,17 @@ class Msh {
   int version_ = 0;
   bool has_elements_ = false;
   NodeTags tags_;
+  std::uint64_t high_order_ = 0;  ///< elements of order 3 and more
   // By dimension and tag.
   std::map<std::pair<int, std::int64_t>, std::vector<std::int64_t>> physical_;  ///< of entities
   std::map<std::pair<int, std::int64_t>, std::int64_t> parent_;                 ///< of entities of parts
   std::map<std::pair<int, std::int64_t>, std::string> names_;
-  std::map<std::pair<int, std::int64_t>, std::vector<std::uint32_t>> members_;  ///< of groups that are sets
+  std::array<std::map<Place, std::size_t>, 4> places_;  ///< by dimension
+  std::map<std::int64_t, std::vector<std::uint32_t>> node_groups_;
+  std::map<std::pair<int, std::int64_t>, std::int64_t> group_of_entity_;  ///< the first one, of version 2
+  std::array<bool, 4> is_in_several_groups_{};                            ///< some entity of the dimension
+  std::array<std::int64_t, 3> last_place_{};
+  std::int64_t last_ref_ = -1;
   std::array<std::vector<std::uint64_t>, 4> element_tags_;
   /// Of the field that is asked for, by tags of nodes and elements.
   std::array<std::vector<std::pair<std::uint64_t, double>>, 2> data_;

@@ -3,6 +3,7 @@
 
 #include "formats/read/read_tetgen.h"
 
+#include "formats/containers/named_file.h"
 #include "formats/containers/scanner.h"
 #include "formats/parts/raw_mesh.h"
 #include "formats/parts/surface_builder.h"
@@ -118,14 +119,14 @@ RawMesh read_tetgen(const TetgenFiles& files) {
 }
 
 RawMesh read_tetgen(const Input& input) {
-  namespace fs = std::filesystem;
-  const auto beside = [&](const char* ending) { return fs::path(input.name).replace_extension(ending); };
-  const auto load = [&](const char* ending) { return LoadedFile(beside(ending), input.context); };
+  const auto load = [&](const char* ending) {
+    const std::filesystem::path name = std::filesystem::path(input.name).replace_extension(ending);
+    return LoadedFile(named_file(input, name.filename().string()), input.context);
+  };
   const LoadedFile node = load(".node"), ele = load(".ele");
-  std::error_code error;
   std::optional<LoadedFile> face, edge;
-  if (fs::exists(beside(".face"), error)) face.emplace(beside(".face"), input.context);
-  if (fs::exists(beside(".edge"), error)) edge.emplace(beside(".edge"), input.context);
+  if (!sibling_file(input, ".face").empty()) face.emplace(load(".face"));
+  if (!sibling_file(input, ".edge").empty()) edge.emplace(load(".edge"));
   return read_tetgen(
       TetgenFiles{node.input(), ele.input(), face ? &face->input() : nullptr, edge ? &edge->input() : nullptr});
 }

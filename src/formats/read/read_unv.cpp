@@ -23,16 +23,18 @@ using Kind = NamedSet::Kind;
 struct ElementType {
   Kind kind;
   std::size_t nodes;
-  std::array<std::uint8_t, 15> places;
+  std::array<std::uint8_t, 20> places;
 };
 
 const ElementType* kept_type(std::int64_t descriptor) {
   static constexpr ElementType kTet{Kind::kElements, 4, {0, 1, 2, 3}},
       kTet10{Kind::kElements, 10, {0, 4, 1, 5, 2, 6, 7, 8, 9, 3}}, kTriangle{Kind::kFaces, 3, {0, 1, 2}},
       kTriangle6{Kind::kFaces, 6, {0, 3, 1, 4, 2, 5}}, kWedge{Kind::kElements, 6, {0, 1, 2, 3, 4, 5}},
-      kWedge15{Kind::kElements, 15, kUnvWide.wedge}, kQuad{Kind::kFaces, 4, {0, 1, 2, 3}},
-      kQuad8{Kind::kFaces, 8, {0, 4, 1, 5, 2, 6, 3, 7}}, kBeam{Kind::kEdges, 2, {0, 1}},
-      kBeam3{Kind::kEdges, 3, {0, 2, 1}};
+      kWedge15{Kind::kElements, 15, {0, 6, 1, 7, 2, 8, 12, 13, 14, 3, 9, 4, 10, 5, 11}},
+      kQuad{Kind::kFaces, 4, {0, 1, 2, 3}}, kQuad8{Kind::kFaces, 8, {0, 4, 1, 5, 2, 6, 3, 7}},
+      kBeam{Kind::kEdges, 2, {0, 1}}, kBeam3{Kind::kEdges, 3, {0, 2, 1}},
+      kHexahedron{Kind::kElements, 8, {0, 1, 2, 3, 4, 5, 6, 7}},
+      kHexahedron20{Kind::kElements, 20, {0, 8, 1, 9, 2, 10, 3, 11, 12, 13, 14, 15, 4, 16, 5, 17, 6, 18, 7, 19}};
   switch (descriptor) {
     case 111:
       return &kTet;
@@ -42,6 +44,10 @@ const ElementType* kept_type(std::int64_t descriptor) {
       return &kWedge;
     case 113:
       return &kWedge15;
+    case 115:
+      return &kHexahedron;
+    case 116:
+      return &kHexahedron20;
     case 41:
     case 51:
     case 61:
@@ -162,7 +168,7 @@ class Unv {
         for (std::int64_t i = 0; i < count; ++i) scan_.integer("a node");
         continue;
       }
-      std::array<VertexIndex, 15> nodes;
+      std::array<VertexIndex, 20> nodes;
       for (std::size_t i = 0; i < type->nodes; ++i) nodes[type->places[i]] = node(id);
       add(id, property, type->kind, std::span(nodes).first(type->nodes));
     }
@@ -194,6 +200,8 @@ class Unv {
       raw_.edge_ref.push_back(property);
     } else if (nodes.size() == 4 || nodes.size() == 10) {
       raw_.add_tet(nodes, property);
+    } else if (nodes.size() == 8 || nodes.size() == 20) {
+      raw_.add_hexahedron(nodes, property);
     } else {
       raw_.add_wide_cell(nodes, property);
     }

@@ -253,7 +253,7 @@ class Vtk {
     const bool is_asked = components == 1 ? of_ != Of::kField : of_ == Of::kPoints;
     if (is_asked && !is_numbering(name) && raw_.field.offer(input_, name, components)) return take_field(n, of);
     const bool is_wanted = is_set_name(name) || name == "region" || name == "patch" || name == "curve" ||
-                           name == "source" || name == "layers" || of_ == Of::kField;
+                           name == "source" || name == "layers" || of_ == Of::kField || of_ == Of::kCells;
     if (!is_wanted || of.name == "double" || of.name == "float") return values(n, of, [](double) {});
     std::vector<std::int64_t> all = integers(n, of);
     if (of_ == Of::kField) {
@@ -275,9 +275,16 @@ class Vtk {
     if (types_.size() != ends_.size())
       input_.fail(fmt::format("has {} cells and {} types; the file is damaged", ends_.size(), types_.size()));
     VtkCellData data;
+    std::vector<CellNumbers> others;
     for (auto& [name, all] : cell_arrays_) {
       if (all.size() != types_.size()) continue;
-      if (is_set_name(name)) {
+      if (name == "gmsh:physical" || name == "medit:ref") {
+        if (data.region.empty()) data.region = data.patch = std::move(all);
+      } else if (!is_numbering(name)) {
+        others.push_back({name, std::move(all)});
+      } else if (name == "label" || name.starts_with("gmsh:")) {
+        continue;
+      } else if (is_set_name(name)) {
         data.sets.emplace_back(name, std::move(all));
       } else if (name == "source" || name == "layers") {
         (name == "source" ? data.source : data.layers) = std::move(all);
@@ -286,6 +293,8 @@ class Vtk {
         (name == "region" ? data.region : name == "patch" ? data.patch : data.curve) = std::move(all);
       }
     }
+    if (data.region.empty() && data.patch.empty())
+      data.region = data.patch = material_of(std::move(others), raw_.notes);
     if (cell_field_.size() == types_.size()) data.field = std::move(cell_field_);
     VtkCellTaker taker(input_, raw_, data);
     std::int64_t begin = 0;

@@ -83,6 +83,22 @@ class Vtu {
     return {};
   }
 
+  static bool is_solid(std::int64_t type) {
+    constexpr std::array<std::int64_t, 10> kSolids{10, 11, 12, 13, 14, 24, 25, 26, 27, 29};
+    return std::find(kSolids.begin(), kSolids.end(), type) != kSolids.end();
+  }
+
+  /// Arrays of other programs.
+  std::vector<CellNumbers> other_numbers() const {
+    std::vector<CellNumbers> arrays;
+    for (const VtkArray& array : xml_.arrays) {
+      const bool is_known = is_numbering(array.name) || array.name == "beta" || array.name.starts_with("vtkGhost");
+      if (array.section != "CellData" || is_known) continue;
+      if (auto values = cell_integers(array.name, 0)) arrays.push_back({array.name, *std::move(values)});
+    }
+    return arrays;
+  }
+
   /// Of all cells together: more than any mesh has, polyhedra, lines through all points and high orders included.
   std::uint64_t most_corners() const { return 64 * std::min(xml_.cells, kMostCells) + 4 * xml_.points; }
 
@@ -95,6 +111,10 @@ class Vtu {
     check_length(offsets_array, offsets.size(), xml_.cells);
     const std::vector<std::int64_t> connectivity = vtk_integers(xml_, connectivity_array, input_, most_corners());
     VtkCellData data{references("region"), references("patch"), references("curve"), {}, {}, {}};
+    if (data.region.empty() && data.patch.empty()) data.region = data.patch = material_of(other_numbers(), raw_.notes);
+    if (const auto labels = cell_integers("label", 0); labels && xml_.find("CellData", "region"))
+      for (std::size_t c = 0; c < types.size(); ++c)
+        if (is_solid(types[c]) && c < data.region.size()) raw_.region_labels[data.region[c]] = (*labels)[c];
     if (auto sources = cell_integers("source", 0)) data.source = *std::move(sources);
     if (auto layers = cell_integers("layers", 0)) data.layers = *std::move(layers);
     for (const VtkArray& array : xml_.arrays)

@@ -3,6 +3,7 @@
 // the attributes "region", "patch", "curve", or those of meshio's and FEniCSx's names.
 
 #include "formats/containers/hdf5_file.h"
+#include "formats/containers/named_file.h"
 #include "formats/containers/scanner.h"
 #include "formats/containers/vtk_xml.h"
 #include "formats/parts/raw_mesh.h"
@@ -159,8 +160,7 @@ class XdmfFile {
       input_.fail_at_line(
           item.at, fmt::format("the values in {} are in another folder; move them beside this file", in_quotes(name)));
     auto& file = files_[name];
-    if (!file)
-      file = std::make_unique<Hdf5Reader>(fs::path(input_.name).parent_path() / name, input_.name, input_.context);
+    if (!file) file = std::make_unique<Hdf5Reader>(named_file(input_, name), input_.name, input_.context);
     return {file.get(), text.substr(colon + 1)};
   }
 
@@ -189,7 +189,7 @@ class Xdmf {
     read_file(input_);
     const fs::path path(input_.name);
     for (const char* further : {"_patches.xdmf", "_curves.xdmf"}) {
-      const fs::path file = path.parent_path() / (path.stem().string() + further);
+      const fs::path file = named_file(input_, path.stem().string() + further);
       std::error_code error;
       if (!fs::exists(file, error)) continue;
       const LoadedFile loaded(file, input_.context);

@@ -1,5 +1,7 @@
 #include "formats/read/vtk_reading.h"
 
+#include "formats/containers/scanner.h"
+
 #include <algorithm>
 #include <array>
 
@@ -28,6 +30,45 @@ std::int64_t at_or(const std::vector<std::int64_t>& values, std::uint64_t i, std
 }
 
 }  // namespace
+
+std::vector<std::int64_t> material_of(std::vector<CellNumbers> arrays, std::vector<std::string>& notes) {
+  if (arrays.empty()) return {};
+  constexpr std::array<std::string_view, 14> kMaterials{
+      "materialid", "materialids", "material", "matid", "mat",    "cellentityids",   "regionid",
+      "regions",    "celltags",    "tag",      "ref",   "domain", "elementblockids", "objectid"};
+  const auto plain = [](std::string_view name) {
+    std::string letters;
+    for (const char c : name)
+      if (c != ' ' && c != '_' && c != '-') letters += to_lower(c);
+    return letters;
+  };
+  const auto rank = [&](const CellNumbers& array) {
+    const auto at = std::find(kMaterials.begin(), kMaterials.end(), plain(array.name));
+    return static_cast<std::size_t>(at - kMaterials.begin());
+  };
+  // Numbers of cells are all different.
+  std::vector<const CellNumbers*> candidates;
+  for (const CellNumbers& array : arrays) {
+    std::vector<std::int64_t> sorted = array.values;
+    std::sort(sorted.begin(), sorted.end());
+    const bool is_numbering = std::adjacent_find(sorted.begin(), sorted.end()) == sorted.end();
+    if (!is_numbering || array.values.size() < 2) candidates.push_back(&array);
+  }
+  std::stable_sort(candidates.begin(), candidates.end(),
+                   [&](const CellNumbers* a, const CellNumbers* b) { return rank(*a) < rank(*b); });
+  const bool is_clear = candidates.size() == 1 || (!candidates.empty() && rank(*candidates[0]) < kMaterials.size());
+  const CellNumbers* const chosen = is_clear ? candidates[0] : nullptr;
+  std::string others;
+  for (const CellNumbers& array : arrays)
+    if (&array != chosen) others += (others.empty() ? "" : ", ") + in_quotes(array.name);
+  if (chosen != nullptr)
+    notes.push_back(fmt::format("the cell array {} tells regions and patches", in_quotes(chosen->name)));
+  if (!others.empty())
+    notes.push_back(
+        fmt::format("cell arrays of whole numbers left out: {}{}", others,
+                    chosen != nullptr ? "" : "; one that is called \"region\" or \"MaterialID\" tells regions"));
+  return chosen != nullptr ? chosen->values : std::vector<std::int64_t>();
+}
 
 bool is_set_name(std::string_view array) {
   return !group_named(array).name.empty();
@@ -69,17 +110,22 @@ void VtkCellTaker::take(std::uint64_t cell, std::int64_t type, std::span<const s
     kTriangle = 5,
     kQuad = 9,
     kTetra = 10,
+    kVoxel = 11,
+    kHexahedron = 12,
     kWedge = 13,
     kPyramid = 14,
     kLine3 = 21,
     kTriangle6 = 22,
     kQuad8 = 23,
     kTetra10 = 24,
+    kHexahedron20 = 25,
     kWedge15 = 26,
-    kPyramid13 = 27
+    kPyramid13 = 27,
+    kHexahedron27 = 29
   };
   const std::size_t count = nodes.size();
-  std::array<VertexIndex, 15> all, ours;
+  std::array<VertexIndex, 27> all;
+  std::array<VertexIndex, 15> ours;
   const auto take_nodes = [&] {
     for (std::size_t k = 0; k < count; ++k) all[k] = node(cell, nodes[k]);
   };
@@ -97,6 +143,14 @@ void VtkCellTaker::take(std::uint64_t cell, std::int64_t type, std::span<const s
     member = raw_.tets.size();
     const auto in_order = in_our_order(std::span<const VertexIndex>(all).first(count), order_, ours);
     if (raw_.add_wide_cell(in_order, at_or(data_.region, cell, 1)) == 0) return;
+    end = raw_.tets.size();
+  } else if (((type == kHexahedron || type == kVoxel) && count == 8) || (type == kHexahedron20 && count == 20) ||
+             (type == kHexahedron27 && count == 27)) {
+    take_nodes();
+    if (type == kVoxel) std::swap(all[2], all[3]), std::swap(all[6], all[7]);
+    kind = Kind::kElements;
+    member = raw_.tets.size();
+    if (raw_.add_hexahedron(std::span(all).first(8), at_or(data_.region, cell, 1)) == 0) return;
     end = raw_.tets.size();
   } else if (((type == kQuad && count == 4) || (type == kQuad8 && count == 8)) && !data_.patch.empty() &&
              data_.patch[cell] > 0) {

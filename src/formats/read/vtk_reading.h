@@ -26,6 +26,15 @@ bool is_set_name(std::string_view array);
 /// Whether an array numbers things, as those of vtk_cells.h do, or those that meshio makes of other formats.
 bool is_numbering(std::string_view array);
 
+/// An array of whole numbers of another program, one per cell.
+struct CellNumbers {
+  std::string name;
+  std::vector<std::int64_t> values;
+};
+/// That of them which tells materials: by names that programs give it, else the only one that does not number the
+/// cells through. Empty if there is none. A note says which, and which others are left out.
+std::vector<std::int64_t> material_of(std::vector<CellNumbers> arrays, std::vector<std::string>& notes);
+
 /// Takes the cells of a VTK file one by one: tetrahedra, triangles and lines, linear or quadratic.
 class VtkCellTaker {
  public:

@@ -14,7 +14,6 @@
 #include <array>
 #include <cmath>
 #include <filesystem>
-#include <limits>
 #include <optional>
 #include <span>
 #include <utility>
@@ -32,9 +31,14 @@ bool exists_file(const fs::path& file) {
   return fs::exists(file, error);
 }
 
-Metric metric_of_size(double h) {
-  // What is no size must not become a metric by squaring.
-  return h > 0 ? Metric::of_size(h) : Metric::of_size(std::numeric_limits<double>::quiet_NaN());
+/// What is no size must not become a metric by squaring.
+Metric metric_of_size(double h, std::size_t point, const auto& fail) {
+  if (!(h > 0)) fail(fmt::format("size {:.6g} at point {}: sizes must be above 0", h, point));
+  const Metric metric = Metric::of_size(h);
+  const double determinant = metric.determinant();
+  if (!(determinant > 0 && std::isfinite(determinant)))
+    fail(fmt::format("size {:.6g} at point {} is out of range", h, point));
+  return metric;
 }
 
 /// One section of values at vertices, of which the first field of tensors counts, or the first of numbers. `Source`
@@ -61,7 +65,9 @@ std::vector<Metric> metrics_in_section(Source& source) {
       for (int k = 0; k < components[f]; ++k) v[static_cast<std::size_t>(k)] = source.real();
       if (f != before) continue;
       // Rows of the lower triangle: xx, xy yy, xz yz zz.
-      metrics.push_back(components[f] == 1 ? metric_of_size(v[0]) : Metric{v[0], v[1], v[3], v[2], v[4], v[5]});
+      const auto fail = [&](const std::string& what) { source.fail(what); };
+      metrics.push_back(components[f] == 1 ? metric_of_size(v[0], metrics.size(), fail)
+                                           : Metric{v[0], v[1], v[3], v[2], v[4], v[5]});
     }
   return metrics;
 }
@@ -174,7 +180,7 @@ std::string names_in_quotes(const std::vector<std::string>& names) {
 
 /// Of 6 numbers VTK says xx yy zz xy yz xz, of 9 rows.
 Metric metric_of_vtk(const io::Input& input, std::span<const double> v, std::size_t point) {
-  if (v.size() == 1) return metric_of_size(v[0]);
+  if (v.size() == 1) return metric_of_size(v[0], point, [&](const std::string& what) { input.fail(what); });
   if (v.size() == 6) return {v[0], v[3], v[5], v[1], v[4], v[2]};
   const double scale = std::abs(v[0]) + std::abs(v[4]) + std::abs(v[8]);
   constexpr double kRounding = 1e-5;  // of single precision

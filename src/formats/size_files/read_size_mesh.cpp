@@ -4,6 +4,7 @@
 #include <octafront/io.h>
 
 #include "formats/containers/input.h"
+#include "formats/containers/named_file.h"
 #include "formats/containers/scanner.h"
 #include "formats/read/readers.h"
 #include "formats/size_files/readers.h"
@@ -82,16 +83,12 @@ void read_mtr(const io::Input& asked, const io::Input& input, io::RawMesh& raw) 
 
 /// Values that stand in a file beside the mesh.
 void read_beside(const io::Input& input, io::RawMesh& raw) {
-  const fs::path sol = fs::path(input.name).replace_extension(".sol");
-  const fs::path mtr = fs::path(input.name).replace_extension(".mtr");
-  if (raw.format.starts_with("MEDIT") && is_there(sol)) {
-    const io::LoadedFile file(sol, input.context);
-    MeditSolution(input, file.input(), raw).read();
-  }
-  if (raw.format == "TetGen" && is_there(mtr)) {
-    const io::LoadedFile file(mtr, input.context);
-    read_mtr(input, file.input(), raw);
-  }
+  const bool is_medit = raw.format.starts_with("MEDIT");
+  if (!is_medit && raw.format != "TetGen") return;
+  const fs::path values = io::sibling_file(input, is_medit ? ".sol" : ".mtr");
+  if (values.empty()) return;
+  const io::LoadedFile file(values, input.context);
+  is_medit ? MeditSolution(input, file.input(), raw).read() : read_mtr(input, file.input(), raw);
 }
 
 std::string listed(const std::vector<std::string>& names) {
@@ -144,7 +141,8 @@ SizeMesh size_mesh_of(const io::Input& input, io::RawMesh raw) {
 
 /// Cells that are none of ours: a background grid's.
 bool looks_like_grid(const io::RawMesh& raw) {
-  return raw.format == "VTU" && raw.tets.empty() && raw.triangles.empty() && raw.other_elements > 0;
+  const bool has_cubes_alone = raw.tets.size() <= 6 * raw.hexahedra && raw.wide_cells.empty() && raw.triangles.empty();
+  return raw.format == "VTU" && has_cubes_alone && raw.hexahedra + raw.other_elements > 0;
 }
 
 }  // namespace

@@ -1,5 +1,7 @@
 // What a format cannot hold is said, never dropped in silence.
 
+#include <octafront/named_groups.h>
+
 #include "formats/table/formats.h"
 
 #include <algorithm>
@@ -27,6 +29,9 @@ class Losses {
     numbered("region", mesh_.parts(Origin::kRegion), holds.regions);
     numbered("patch", mesh_.parts(Origin::kPatch), holds.patches);
     numbered("curve", mesh_.parts(Origin::kCurve), holds.curves);
+    renumbered("regions", mesh_.parts(Origin::kRegion), holds.regions);
+    renumbered("patches", mesh_.parts(Origin::kPatch), holds.patches);
+    renumbered("curves", mesh_.parts(Origin::kCurve), holds.curves);
     if (mesh_.cells_only()) leave_out_faces();
     if (!holds.interfaces && !mesh_.cells_only() && !mesh_.mesh().interfaces.empty())
       lose(fmt::format("holds no faces inside: {} are left out", mesh_.mesh().interfaces.size()));
@@ -56,11 +61,32 @@ class Losses {
     if (keeps == Keeps::kNodeSets && !parts.empty()) lose(fmt::format("holds {} as sets of nodes", several));
   }
 
+  bool is_medit() const { return format_.name == "medit" || format_.name == "meditb"; }
+
+  /// Numbers below 1, and others that are not the tags of parts, which have no names beside them.
+  void renumbered(std::string_view what, std::span<const Part> parts, Keeps keeps) {
+    if (is_medit() || format_.name == "tetgen" || keeps == Keeps::kNothing) return;
+    const bool has_labels = what == "regions" && format_.endings.starts_with(".vt") && !mesh_.labels().empty();
+    std::string changes;
+    std::size_t changed = 0;
+    constexpr std::size_t kShown = 4;
+    for (const Part& part : parts) {
+      const std::int64_t number = mesh_.number_of(part.origin, part.number);
+      if (part.is_named || number == std::int64_t{part.tag}) continue;
+      if (++changed <= kShown) changes += fmt::format("{}{} for {}", changes.empty() ? "" : ", ", part.tag, number);
+    }
+    // A mesh whose only number is 0 has none.
+    const bool says_nothing = parts.size() == 1 && mesh_.number_of(parts[0].origin, parts[0].number) == 0;
+    if (changed == 0 || has_labels || says_nothing) return;
+    lose(fmt::format("has other numbers of {}: {}{}", what, changes, changed > kShown ? ", ..." : ""));
+  }
+
   void sets(std::string_view of, NamedSet::Kind kind, bool holds) {
     if (holds) return;
     std::string names;
     for (const Part& p : mesh_.parts(Origin::kSet))
-      if (p.kind == kind) names += (names.empty() ? "" : ", ") + one_line(p.name);
+      if (p.kind == kind && !(is_medit() && medit_set(mesh_.mesh().sets[p.number])))
+        names += (names.empty() ? "" : ", ") + one_line(p.name);
     if (!names.empty()) lose(fmt::format("holds no further sets of {}: left out are {}", of, names));
   }
 

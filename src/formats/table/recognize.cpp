@@ -50,8 +50,10 @@ constexpr std::array kMagics{
     Magic{0, "Kaydara FBX"sv, "an FBX model: export it as STL, OBJ, OFF or PLY"},
     Magic{0, "BLENDER"sv, "a Blender file: export it as STL, OBJ or PLY"},
     Magic{0, "ISO-10303-21"sv, "a STEP model: it is read where a whole input is (`octafront mesh`), not as a surface"},
-    Magic{0, "DBRep_DrawableShape"sv, "an OpenCASCADE BREP model: triangulate it and export it as STL"},
-    Magic{0, "CASCADE Topology"sv, "an OpenCASCADE BREP model: triangulate it and export it as STL"},
+    Magic{0, "DBRep_DrawableShape"sv,
+          "an OpenCASCADE BREP model: it is read where a whole input is (`octafront mesh`), not as a surface"},
+    Magic{0, "CASCADE Topology"sv,
+          "an OpenCASCADE BREP model: it is read where a whole input is (`octafront mesh`), not as a surface"},
     Magic{0, "#VRML"sv, "a VRML scene: export it as STL, OBJ, OFF or PLY"},
     Magic{0, "# vtk DataFile"sv, "a legacy VTK file: convert it to PLY or STL (ParaView does it)"},
     Magic{0, "version https://git-lfs"sv, "a Git LFS pointer, not the file itself: fetch it with `git lfs pull`"},
@@ -171,8 +173,11 @@ bool ends_in(const Input& input, std::initializer_list<std::string_view> endings
 }
 
 bool is_binary_medit(std::string_view bytes) {
-  constexpr std::string_view kOne("\x01\0\0\0"sv);
-  return bytes.starts_with(kOne) && bytes.size() > 8 && bytes[4] >= 1 && bytes[4] <= 4;
+  // In either byte order: 1, and the version.
+  constexpr std::string_view kOne("\x01\0\0\0"sv), kSwapped("\0\0\0\x01\0\0\0"sv);
+  if (bytes.size() <= 8) return false;
+  return (bytes.starts_with(kOne) && bytes[4] >= 1 && bytes[4] <= 4) ||
+         (bytes.starts_with(kSwapped) && bytes[7] >= 1 && bytes[7] <= 4);
 }
 
 /// Whether well_known_kind() says that it is a mesh which is read here.
@@ -215,10 +220,14 @@ std::string_view well_known_kind(std::string_view bytes) {
   return {};
 }
 
+bool is_binary_stl(std::string_view head, std::uint64_t size) {
+  return head.size() >= 84 && size == 84 + std::uint64_t{50} * stl_count(head);
+}
+
 SurfaceKind recognize_surface(const Input& input) {
   const std::string_view bytes = input.bytes;
-  // The size settles it: many binary STL files begin with "solid" all the same.
-  if (bytes.size() >= 84 && bytes.size() == 84 + std::uint64_t{50} * stl_count(bytes)) return SurfaceKind::kBinaryStl;
+  // Before words: many binary STL files begin with "solid" all the same.
+  if (is_binary_stl(bytes, bytes.size())) return SurfaceKind::kBinaryStl;
   if (bytes.starts_with("ply") && (bytes.size() == 3 || is_blank(bytes[3]))) return SurfaceKind::kPly;
   Scanner scan(input, '#');
   const std::string_view first = scan.word();

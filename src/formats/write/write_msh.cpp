@@ -283,7 +283,9 @@ class Msh2Writer {
 
   /// Always text, also in binary files.
   void write_periodic() {
-    const PeriodicLinks links(mesh_, [&](std::size_t f) { return static_cast<std::int32_t>(mesh_.patch_of(f)) + 1; });
+    const PeriodicLinks links(mesh_, [&](std::size_t f) {
+      return static_cast<std::int32_t>(mesh_.tag_of(Part::Origin::kPatch, mesh_.patch_of(f)));
+    });
     text_.line("$Periodic\n{}", links.size());
     links.for_each([&](std::int32_t tag, std::int32_t of, const std::array<double, 16>& matrix, const auto& pairs) {
       text_.line("2 {} {}", tag, of);
@@ -308,9 +310,10 @@ class Msh2Writer {
       put(++tag_);
       if (out_.as_text())
         for (const std::int32_t n : {type, kTags}) put(n);
-      const std::uint32_t part_tag = dimension == 1   ? mesh_.curve_of(i) + 1
-                                     : dimension == 2 ? mesh_.patch_of(cells_.first_face(i)) + 1
-                                                      : mesh_.tag_of_region(mesh_.region_of(cells_.first_tet(i)));
+      const std::uint32_t part_tag = dimension == 1 ? mesh_.tag_of(Part::Origin::kCurve, mesh_.curve_of(i))
+                                     : dimension == 2
+                                         ? mesh_.tag_of(Part::Origin::kPatch, mesh_.patch_of(cells_.first_face(i)))
+                                         : mesh_.tag_of_region(mesh_.region_of(cells_.first_tet(i)));
       for (int k = 0; k < kTags; ++k) put(static_cast<std::int32_t>(part_tag));
       nodes_of_.put<std::int32_t>(dimension, i, [&](std::int32_t tag) { put(tag); });
       out_.end_record();

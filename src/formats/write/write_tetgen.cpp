@@ -29,7 +29,7 @@ void write_tetgen(MeshOutput& output, const MeshParts& mesh) {
     for (std::size_t t = 0; t < mesh.tets(); ++t) {
       out << std::uint64_t{t} + 1;
       for (std::size_t k = 0; k < mesh.nodes_per_tet(); ++k) out << ' ' << mesh.tet_node(t, kTetgenTet[k]) + 1;
-      out << ' ' << mesh.tag_of_region(mesh.region_of(t)) << '\n';
+      out << ' ' << mesh.number_of(Part::Origin::kRegion, mesh.region_of(t)) << '\n';
     }
   }
   {
@@ -37,8 +37,8 @@ void write_tetgen(MeshOutput& output, const MeshParts& mesh) {
     out.line("{} 1", mesh.faces());
     for (std::size_t f = 0; f < mesh.faces(); ++f) {
       const auto& [a, b, c] = mesh.face(f);
-      out << std::uint64_t{f} + 1 << ' ' << a + 1 << ' ' << b + 1 << ' ' << c + 1 << ' ' << mesh.patch_of(f) + 1
-          << '\n';
+      out << std::uint64_t{f} + 1 << ' ' << a + 1 << ' ' << b + 1 << ' ' << c + 1 << ' '
+          << mesh.number_of(Part::Origin::kPatch, mesh.patch_of(f)) << '\n';
     }
   }
   // Without edges too: an older file of this name would be taken for ours.
@@ -46,7 +46,7 @@ void write_tetgen(MeshOutput& output, const MeshParts& mesh) {
   out.line("{} 1", mesh.edges());
   for (std::size_t e = 0; e < mesh.edges(); ++e)
     out << std::uint64_t{e} + 1 << ' ' << mesh.edge_node(e, 0) + 1 << ' ' << mesh.edge_node(e, 1) + 1 << ' '
-        << mesh.curve_of(e) + 1 << '\n';
+        << mesh.number_of(Part::Origin::kCurve, mesh.curve_of(e)) << '\n';
 }
 
 }  // namespace octafront::io

@@ -114,10 +114,10 @@ class XdmfWriter {
   }
 
   std::int32_t number(const WrittenGrid& grid, std::uint64_t i) const {
-    return static_cast<std::int32_t>(grid.kind == Kind::kElements
-                                         ? mesh_.tag_of_region(mesh_.region_of(cells_.first_tet(i)))
-                                     : grid.kind == Kind::kFaces ? 1 + mesh_.patch_of(cells_.first_face(i))
-                                                                 : 1 + mesh_.curve_of(i));
+    return static_cast<std::int32_t>(
+        grid.kind == Kind::kElements ? mesh_.tag_of_region(mesh_.region_of(cells_.first_tet(i)))
+        : grid.kind == Kind::kFaces  ? mesh_.tag_of(Part::Origin::kPatch, mesh_.patch_of(cells_.first_face(i)))
+                                     : mesh_.tag_of(Part::Origin::kCurve, mesh_.curve_of(i)));
   }
 
   void write_topology(TextWriter& out, const WrittenGrid& grid, const std::string& path) {

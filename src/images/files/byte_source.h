@@ -37,6 +37,7 @@ class ByteSource {
 
   /// No more can come: of a packed stream by what deflate can do.
   std::uint64_t most_bytes_left() const;
+  const io::Input& input() const { return input_; }
   bool is_packed() const { return stream_ != nullptr; }
   /// Throws InputError "NAME, byte N [of the unpacked data]: message" at the next byte.
   [[noreturn]] void fail(std::string_view message) const;

@@ -46,6 +46,7 @@ Image::Values read_voxels(ByteSource& source, const std::array<std::uint32_t, 3>
         fmt::format("{} voxels take {} bytes, but {} {} can follow; the file is truncated or damaged: copy or "
                     "export it again",
                     in_words(sizes), bytes, source.is_packed() ? "at most" : "only", source.most_bytes_left()));
+  require_memory_for(source.input(), bytes / bytes_of(stored.type), stored.type);
   return values_of(source.require(bytes, "the voxels"), stored, notes);
 }
 
@@ -58,6 +59,7 @@ Image::Values read_text_voxels(const io::Input& input, const char* at, const std
     input.fail_at_byte(at, fmt::format("{} voxels take {} characters at least, but only {} can follow; the file is "
                                        "truncated or damaged: copy or export it again",
                                        in_words(sizes), 2 * voxels - 1, scan.bytes_left()));
+  require_memory_for(input, voxels, VoxelType::kFloat64);
   std::vector<double> numbers(voxels);
   for (double& number : numbers) number = scan.number("the value of a voxel");
   return values_of(numbers, type, notes);

@@ -1,10 +1,14 @@
 #include <octafront/error.h>
 
+#include "formats/containers/named_file.h"
 #include "formats/containers/scanner.h"
+#include "formats/table/formats.h"
+#include "formats/table/recognize.h"
 #include "images/files/byte_source.h"
 #include "images/files/dicom/dicom.h"
 #include "images/files/readers.h"
 
+#include <algorithm>
 #include <array>
 #include <filesystem>
 #include <fstream>
@@ -57,7 +61,7 @@ const Kind* kind_of(std::string_view head) {
 }
 
 KeptFile opened_beside(const fs::path& file, const std::string& name, const RunContext& context) {
-  const auto loaded = std::make_shared<const io::LoadedFile>(file.parent_path() / name, context);
+  const auto loaded = std::make_shared<const io::LoadedFile>(io::named_file({file.string(), {}}, name), context);
   return {loaded->input(), loaded};
 }
 
@@ -78,10 +82,37 @@ std::string first_bytes(const fs::path& file) {
   return head_of({file.string(), bytes});
 }
 
-/// Whether a file has no kind of its own, but one beside that explains it.
+/// Endings of files that say themselves what they hold; `.img` may be raw.
+constexpr std::array kOwnEndings{".nii", ".hdr", ".nrrd", ".nhdr", ".mha",  ".mhd",  ".inr", ".inv3",
+                                 ".dcm", ".stp", ".step", ".igs",  ".iges", ".brep", ".json"};
+
+bool claims_a_kind(const fs::path& file) {
+  const fs::path bare = file.extension() == ".gz" ? file.stem() : file;
+  const std::string ending = bare.extension().string();
+  return io::format_of(bare) != nullptr || std::any_of(kOwnEndings.begin(), kOwnEndings.end(), [&](const char* own) {
+           return io::equal_ignoring_case(ending, own);
+         });
+}
+
+/// Whether the first bytes are those of a surface, a mesh or another kind of file. Binary STL is told by its size.
+bool is_of_other_kind(const fs::path& file, std::string_view head) {
+  std::error_code error;
+  const std::uint64_t size = fs::file_size(file, error);
+  if (!io::well_known_kind(head).empty() || io::is_binary_stl(head, size)) return true;
+  try {
+    // A raw label image may begin as binary MEDIT does.
+    return io::recognize_surface({file.string(), head}) != io::SurfaceKind::kMeditBinary;
+  } catch (const InputError&) {
+    return false;
+  }
+}
+
+/// Whether neither content nor name of a file say what it is, but a header beside it does.
 bool is_raw(const fs::path& file) {
   const fs::path header = raw_header_of(file);
-  return !header.empty() && kind_of(first_bytes(file)) == nullptr && is_raw_header(first_bytes(header));
+  if (header.empty() || claims_a_kind(file) || !is_raw_header(first_bytes(header))) return false;
+  const std::string head = first_bytes(file);
+  return kind_of(head) == nullptr && (file.extension() == ".raw" || !is_of_other_kind(file, head));
 }
 
 SliceFiles slice_files(const std::vector<std::string>& files, const RunContext& context) {
@@ -161,7 +192,9 @@ Image read_image(const std::vector<std::string>& files, const ImageChoice& choic
   const auto beside = [&](const std::string& name) { return image::opened_beside(file, name, context); };
   if (image::is_raw(file)) {
     const io::LoadedFile header(image::raw_header_of(file), context);
-    return tidied(image::read_raw({header.input(), choice, beside}, file.filename().string()));
+    Image image = image::read_raw({header.input(), choice, beside}, file.filename().string());
+    image.notes.insert(image.notes.begin(), fmt::format("what the voxels mean is said by {}", header.input().name));
+    return tidied(std::move(image));
   }
   const io::LoadedFile loaded(file, context);
   return tidied(image::read_image_bytes({loaded.input(), choice, beside}));

@@ -61,6 +61,7 @@ Image::Values read_data_files(const Reading& reading, const DataFiles& files, st
   const std::uint64_t count = files.names.size(), size = bytes_of(stored.type);
   if (count == 0 || total % count != 0)
     reading.input.fail(fmt::format("names {} files for {} voxels, which cannot be equal shares", count, total));
+  require_memory_for(reading.input, total, stored.type);
   std::vector<char> bytes;
   for (std::uint64_t f = 0; f < count; ++f) {
     reading.input.context.check();
@@ -72,6 +73,7 @@ Image::Values read_data_files(const Reading& reading, const DataFiles& files, st
 
 Image::Values read_attached(const Reading& reading, std::size_t offset, const DataFiles& how, std::uint64_t total,
                             const Picked& picked, const StoredVoxels& stored, std::vector<std::string>& notes) {
+  require_memory_for(reading.input, total, stored.type);
   std::vector<char> bytes;
   read_share(reading.input, offset, how, 0, total, bytes_of(stored.type), picked, bytes);
   return values_of({bytes.data(), bytes.size()}, stored, notes);

@@ -1,5 +1,7 @@
 #include "images/files/voxels.h"
 
+#include <octafront/limits.h>
+
 #include "base/core/parallel.h"
 #include "base/core/wording.h"
 
@@ -8,6 +10,7 @@
 #include <bit>
 #include <cmath>
 #include <cstring>
+#include <functional>
 #include <limits>
 #include <type_traits>
 #include <utility>
@@ -33,12 +36,14 @@ T stored_at(const char* at, bool big_endian) {
 struct Range {
   double least = std::numeric_limits<double>::infinity(), largest = -std::numeric_limits<double>::infinity();
   std::uint64_t not_finite = 0, rounded = 0;
+  double off_whole = 0;  ///< the farthest that a value is from a whole number
 
   Range& operator+=(const Range& b) {
     least = std::min(least, b.least);
     largest = std::max(largest, b.largest);
     not_finite += b.not_finite;
     rounded += b.rounded;
+    off_whole = std::max(off_whole, b.off_whole);
     return *this;
   }
   void add(double v) {
@@ -49,6 +54,7 @@ struct Range {
     least = std::min(least, v);
     largest = std::max(largest, v);
     rounded += static_cast<double>(static_cast<float>(v)) != v;
+    off_whole = std::max(off_whole, std::abs(v - std::round(v)));
   }
   template <class T>
   bool fits() const {
@@ -74,7 +80,26 @@ Range range_of(std::size_t n, const At& at) {
 }
 
 template <class At>
+Image::Values as_integers(std::size_t n, const At& at, std::vector<std::string>& notes);
+
+/// Whether values are whole numbers but for what scaling and single precision leave: labels. More than one number,
+/// since small grey values are all near 0.
+bool is_nearly_whole(const Range& range) {
+  constexpr double kNearlyWhole = 1e-3;
+  return range.not_finite == 0 && range.off_whole > 0 && range.off_whole <= kNearlyWhole &&
+         std::round(range.least) != std::round(range.largest);
+}
+
+template <class At>
 Image::Values as_floats(std::size_t n, const At& at, const Range& range, std::vector<std::string>& notes) {
+  if (is_nearly_whole(range)) {
+    notes.push_back(fmt::format("values are whole numbers but for {:.2g}: they are rounded", range.off_whole));
+    // One type for all: a lambda would make another as_integers() of itself without end.
+    const std::function<double(std::size_t)> rounded = [&](std::size_t i) {
+      return std::round(static_cast<double>(at(i)));
+    };
+    return as_integers(n, rounded, notes);
+  }
   // Beyond single precision is as good as not finite.
   constexpr double kMost = std::numeric_limits<float>::max();
   const double least = std::clamp(range.least, -kMost, kMost), largest = std::clamp(range.largest, -kMost, kMost);
@@ -149,6 +174,12 @@ std::uint64_t bytes_of(VoxelType type) {
 
 bool is_integer(VoxelType type) {
   return type != VoxelType::kFloat32 && type != VoxelType::kFloat64;
+}
+
+void require_memory_for(const io::Input& input, std::uint64_t voxels, VoxelType type) {
+  constexpr double kCopies = 3;  // as they are stored, twice while room for them grows, and as values
+  require_memory(kCopies * static_cast<double>(voxels * bytes_of(type)),
+                 fmt::format("{}: reading its {} voxels", input.name, voxels));
 }
 
 Image::Values values_of(std::string_view bytes, const StoredVoxels& stored, std::vector<std::string>& notes) {

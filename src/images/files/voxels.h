@@ -2,6 +2,8 @@
 
 #include <octafront/image.h>
 
+#include "formats/containers/input.h"
+
 #include <cstdint>
 #include <string>
 #include <string_view>
@@ -14,6 +16,9 @@ enum class VoxelType { kInt8, kUInt8, kInt16, kUInt16, kInt32, kUInt32, kInt64, 
 
 std::uint64_t bytes_of(VoxelType type);
 bool is_integer(VoxelType type);
+
+/// Throws LimitError, before anything is unpacked, if this many stored voxels take more memory than there is.
+void require_memory_for(const io::Input& input, std::uint64_t voxels, VoxelType type);
 
 /// The bytes of voxels: value = slope * stored + intercept.
 struct StoredVoxels {

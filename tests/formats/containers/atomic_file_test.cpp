@@ -15,6 +15,7 @@
 #include <gtest/gtest.h>
 #include <sys/resource.h>
 #include <sys/stat.h>
+#include <sys/wait.h>
 #include <unistd.h>
 
 namespace octafront::io {
@@ -55,6 +56,30 @@ TEST(AtomicFile, AppearsOnlyWhenCommitted) {
   file.commit();
   EXPECT_EQ(file_bytes(target), "new");
   EXPECT_EQ(files_in(folder.path()), 1U);
+}
+
+/// A name of a temporary file, of this process, as of another one.
+fs::path as_of(const fs::path& temporary, pid_t process) {
+  std::string name = temporary.string();
+  const std::string ours = "-" + std::to_string(::getpid()) + "-";
+  return name.replace(name.rfind(ours), ours.size(), "-" + std::to_string(process) + "-");
+}
+
+TEST(AtomicFile, WhatKilledProcessesLeftGoes) {
+  const TemporaryFolder folder;
+  const pid_t child = ::fork();
+  if (child == 0) ::_exit(0);
+  ASSERT_EQ(::waitpid(child, nullptr, 0), child);
+  const fs::path mine = temporary_beside(folder / "a.txt");
+  fs::create_directory(folder / "next");  // folders are looked at once
+  const auto there = [&](const fs::path& name) { return folder / "next" / name.filename().string(); };
+  for (const fs::path& file : {as_of(mine, child), as_of(mine, ::getppid()), mine}) fs::create_directory(there(file));
+  testing::write_bytes(there(as_of(mine, child)) / "piece.vtu", "half");
+  testing::write_bytes(there(".octafront-other-" + std::to_string(child) + "-0.tmp"), "of another machine");
+  testing::write_bytes(there(".octafront-notes"), "the user's");
+  temporary_beside(there("a.txt"));
+  EXPECT_FALSE(fs::exists(there(as_of(mine, child))));
+  EXPECT_EQ(files_in(folder / "next"), 4U);
 }
 
 TEST(AtomicFile, OverwritesWhatWasWritten) {

@@ -5,6 +5,7 @@
 
 #include <algorithm>
 #include <atomic>
+#include <cctype>
 #include <cstring>
 #include <random>
 
@@ -318,6 +319,9 @@ TEST(TruncatedFiles, AreRefusedAtEveryLength) {
     SCOPED_TRACE(file.name);
     for (std::size_t length = 0; length + 2 < file.bytes.size(); ++length) {
       const std::string prefix = file.bytes.substr(0, length);
+      // A text of MEDIT may end behind any of its sections.
+      const std::size_t next = file.bytes.find_first_not_of('\n', length);
+      if (file.bytes.starts_with("MeshVersion") && prefix.ends_with('\n') && std::isalpha(file.bytes[next])) continue;
       EXPECT_TRUE(is_refused([&] { mesh_of(prefix, file.name); })) << length << " of " << file.bytes.size();
     }
   }

@@ -180,11 +180,12 @@ TEST(ReadMesh, MissingBoundaryIsAdded) {
   EXPECT_EQ(first_defect(some), std::nullopt);
 }
 
-TEST(ReadMesh, OddReferencesAreCountedThrough) {
+TEST(ReadMesh, OddReferencesAreLabels) {
   const TetMesh m = mesh_of(
       "MeshVersionFormatted 2\nDimension 3\nVertices 5\n0 0 0 0\n1 0 0 0\n0 1 0 0\n0 0 1 0\n1 1 1 0\n"
       "Tetrahedra 2\n1 2 3 4 2000000000\n2 3 4 5 -1\nEnd\n");
   EXPECT_EQ(m.region, (std::vector<std::uint32_t>{1, 0}));
+  EXPECT_EQ(m.region_labels, (std::vector<std::int64_t>{-1, 2000000000}));
 }
 
 }  // namespace

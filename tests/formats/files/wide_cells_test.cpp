@@ -300,5 +300,27 @@ TEST(ReadMesh, WedgesWithAnEdgeOfNoLengthArePyramids) {
   EXPECT_EQ(std::ranges::count(mesh.patch, 0u), 4);
 }
 
+/// Two cubes side by side as hexahedra, with a quadrilateral of the boundary, beside a tetrahedron on top of the first.
+std::string hexahedra(const std::string& second) {
+  return "MeshVersionFormatted 2\nDimension 3\nVertices\n13\n0 0 0 0\n1 0 0 0\n1 1 0 0\n0 1 0 0\n0 0 1 0\n1 0 1 0\n1 1 "
+         "1 "
+         "0\n0 1 1 0\n2 0 0 0\n2 1 0 0\n2 0 1 0\n2 1 1 0\n.5 .5 2 0\nQuadrilaterals\n1\n1 4 3 2 4\nHexahedra\n2\n1 2 3 "
+         "4 5 6 7 "
+         "8 1\n" +
+         second + "\nTetrahedra\n1\n5 6 7 13 1\nEnd\n";
+}
+
+TEST(ReadMesh, HexahedraAreDividedAlikeOnBothSides) {
+  for (const char* second : {"2 9 10 3 6 11 12 7 2", "12 10 3 7 11 9 2 6 2", "7 12 11 6 3 10 9 2 2"}) {
+    SCOPED_TRACE(second);
+    const MeshFile file = io::read_mesh_bytes({"x", hexahedra(second)});
+    EXPECT_EQ(file.mesh.tets.size(), 13U);
+    EXPECT_EQ(file.mesh.boundary.size(), 22U);
+    EXPECT_NEAR(volume_of(file.mesh, 1), 1, 1e-12);
+    EXPECT_NEAR(volume_of(file.mesh, 0), 1 + 1.0 / 6, 1e-12);
+    EXPECT_EQ(std::count(file.mesh.patch.begin(), file.mesh.patch.end(), 3U), 2);
+  }
+}
+
 }  // namespace
 }  // namespace octafront

@@ -51,6 +51,18 @@ TEST_F(MetricFiles, SolutionsHaveTheLowerTriangleByRows) {
   EXPECT_EQ(read.tets.size(), 1u);
 }
 
+TEST_F(MetricFiles, SizesThatAreNoneAreToldWithTheirPoints) {
+  const std::string mesh = write("a.mesh", kMetricMesh);
+  const auto told = [&](const std::string& size) {
+    return refusal(
+        write("a.sol", "MeshVersionFormatted 2\nDimension 3\nSolAtVertices\n4\n1 1\n1 1 1 " + size + "\nEnd\n"), mesh);
+  };
+  EXPECT_NE(told("-0.1").find("size -0.1 at point 3: sizes must be above 0"), std::string::npos) << told("-0.1");
+  EXPECT_NE(told("0").find("size 0 at point 3"), std::string::npos);
+  EXPECT_NE(told("1e-310").find("size 1e-310 at point 3 is out of range"), std::string::npos) << told("1e-310");
+  EXPECT_EQ(told("1e-6"), "taken");
+}
+
 TEST_F(MetricFiles, SolutionOfTheMeshThatIsAdapted) {
   const std::string mesh = write("other.mesh", kMetricMesh), sol = write("a.sol", kMetricSol);
   EXPECT_EQ(read_metric(sol, mesh).points.size(), 4u);
@@ -59,12 +71,11 @@ TEST_F(MetricFiles, SolutionOfTheMeshThatIsAdapted) {
   EXPECT_NE(refusal(few, mesh).find("3 values, but"), std::string::npos) << refusal(few, mesh);
 }
 
-TEST_F(MetricFiles, SizesBecomeRoundMetricsAndNoSizesNone) {
+TEST_F(MetricFiles, SizesBecomeRoundMetrics) {
   write("a.mesh", kMetricMesh);
   const MetricMesh read =
-      read_metric(write("a.sol", "MeshVersionFormatted 2\nDimension 3\nSolAtVertices\n4\n1 1\n2 -2 1 4\nEnd\n"));
+      read_metric(write("a.sol", "MeshVersionFormatted 2\nDimension 3\nSolAtVertices\n4\n1 1\n2 3 1 4\nEnd\n"));
   EXPECT_EQ(read.metrics[0], Metric::of_size(2));
-  EXPECT_FALSE(read.metrics[1].xx > 0);
 }
 
 TEST_F(MetricFiles, BinarySolutions) {

@@ -171,6 +171,21 @@ TEST(Nifti, TypesSlopesAndWhatIsNotFinite) {
   EXPECT_TRUE(contains(input_error([&] { read_nifti(n); }), "colours"));
 }
 
+TEST(Nifti, LabelsStoredAsFloatsAreRounded) {
+  Nifti n = tiny();
+  n.datatype = 16;
+  n.voxels = raw(std::vector<float>{2.0000305F, 0});
+  Image image = read_nifti(n);
+  expect_values(image, {2, 0});
+  EXPECT_TRUE(any_contains(image.notes, "they are rounded"));
+  EXPECT_TRUE(looks_like_labels(image));
+  // Values that are just small are no labels, nor are those farther from whole numbers.
+  n.voxels = raw(std::vector<float>{0.0007F, 0.0003F});
+  EXPECT_TRUE(std::holds_alternative<std::vector<float>>(read_nifti(n).values));
+  n.voxels = raw(std::vector<float>{1.25F, 0});
+  expect_values(read_nifti(n), {1.25, 0});
+}
+
 TEST(Nifti, OneOfSeveralVolumesIsChosen) {
   Nifti n = tiny();
   n.dim = {4, 2, 1, 1, 3, 1, 1, 1};
