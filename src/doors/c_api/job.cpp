@@ -1,7 +1,9 @@
 #include "doors/c_api/job.h"
 
 #include <octafront/error.h>
+#include <octafront/limits.h>
 #include <octafront/open_cavity_error.h>
+#include <octafront/requirement_error.h>
 
 #include "base/core/thread_limit.h"
 
@@ -63,6 +65,9 @@ void octafront_job::run(const Work& work) {
   } catch (const OpenCavityError& e) {
     surface = std::make_unique<octafront_surface>(octafront_surface{e.cavity});
     close(OCTAFRONT_MESHING, e.what());
+  } catch (const RequirementError& e) {
+    report = Json::parse(to_json(e.report));
+    close(OCTAFRONT_MESHING, e.what());
   } catch (const MeshingError& e) {
     close(OCTAFRONT_MESHING, e.what());
   } catch (const OutputError& e) {
@@ -71,6 +76,8 @@ void octafront_job::run(const Work& work) {
     close(OCTAFRONT_CANCELLED, e.what());
   } catch (const RankFailure& e) {
     close(status_of(e), e.what());
+  } catch (const LimitError& e) {
+    close(OCTAFRONT_MEMORY, e.what());
   } catch (const std::bad_alloc&) {
     close(OCTAFRONT_MEMORY, "out of memory; ask for fewer elements (`elements`, `size`)");
   } catch (const std::exception& e) {

@@ -2,6 +2,7 @@
 
 #include <octafront/adapt.h>
 #include <octafront/cad.h>
+#include <octafront/complex.h>
 #include <octafront/error.h>
 #include <octafront/generate.h>
 #include <octafront/improve_existing.h>
@@ -94,6 +95,8 @@ void repair(octafront_job& job, const SurfaceMesh& surface) {
   job.report["defects"] = Json::parse(to_json(defects));
   job.report["described"] = defects.describe();
   if (defects.clean()) job.report["volume"] = enclosed_volume(repaired.surface);
+  if (defects.clean() && !repaired.surface.sides.empty())
+    job.report["cavities"] = bounded_spaces(repaired.surface, job.context()).cavities;
   give(job, std::move(repaired.surface));
 }
 

@@ -1,6 +1,7 @@
 #include "doors/intake/cell.h"
 
 #include <octafront/error.h>
+#include <octafront/repair.h>
 
 #include "base/core/doubles.h"
 
@@ -46,13 +47,7 @@ bool reaches_into(const Box3& box, const Box3& cell) {
   return reaches;
 }
 
-/// Adds the body moved by so many periods, if it reaches into the cell.
-void add_copy(const SurfaceMesh& body, const PeriodicCell& cell, const std::array<int, 3>& by, SurfaceMesh& to) {
-  std::vector<Vec3> points = body.points;
-  for (Vec3& p : points)
-    for (int axis = 0; axis < 3; ++axis)
-      if (by[axis] != 0) p[axis] += by[axis] * cell.period(axis);
-  if (!reaches_into(bounding_box(points), cell.box)) return;
+void append_moved(const SurfaceMesh& body, const std::vector<Vec3>& points, SurfaceMesh& to) {
   const auto first = static_cast<VertexIndex>(to.points.size());
   to.points.insert(to.points.end(), points.begin(), points.end());
   for (std::size_t t = 0; t < body.triangles.size(); ++t) {
@@ -63,7 +58,38 @@ void add_copy(const SurfaceMesh& body, const PeriodicCell& cell, const std::arra
   }
 }
 
-Body with_copies(Body body, const PeriodicCell& cell) {
+/// Adds the body moved by so many periods, if it reaches into the cell.
+void add_copy(const SurfaceMesh& body, const PeriodicCell& cell, const std::array<int, 3>& by, SurfaceMesh& to) {
+  std::vector<Vec3> points = body.points;
+  for (Vec3& p : points)
+    for (int axis = 0; axis < 3; ++axis)
+      if (by[axis] != 0) p[axis] += by[axis] * cell.period(axis);
+  if (reaches_into(bounding_box(points), cell.box)) append_moved(body, points, to);
+}
+
+/// Whether a body that is longer than the cell runs into its own next copy, as a straight fibre does: it goes on by
+/// itself, and copies would only lie over it.
+bool goes_on_by_itself(const SurfaceMesh& body, const PeriodicCell& cell, std::size_t axis) {
+  const Box3 own = bounding_box(body.points);
+  const int a = static_cast<int>(axis);
+  if (!cell.along[axis] || !(own.hi[a] - own.lo[a] > cell.period(axis))) return false;
+  SurfaceMesh both;
+  append_moved(body, body.points, both);
+  std::vector<Vec3> moved = body.points;
+  for (Vec3& p : moved) p[a] += cell.period(axis);
+  append_moved(body, moved, both);
+  return find_defects(repair_surface(both)).self_intersections.count > 0;
+}
+
+Body with_copies(Body body, PeriodicCell cell, std::vector<std::string>& notes) {
+  for (std::size_t axis = 0; axis < 3; ++axis) {
+    if (!goes_on_by_itself(body.surface, cell, axis)) continue;
+    cell.along[axis] = false;
+    notes.push_back(
+        fmt::format("{} is longer than the cell along {} and would lie in its own copy: it is not repeated "
+                    "along {} (`repeat`)",
+                    body.name, kAxisNames[axis], kAxisNames[axis]));
+  }
   const auto moves = moves_of(body, cell);
   SurfaceMesh all;
   all.patch_names = body.surface.patch_names;
@@ -116,7 +142,8 @@ Body box_body(const std::string& name, const Box3& box) {
   return body;
 }
 
-std::vector<Body> bodies_in_cell(std::vector<Body> bodies, const IntakeOptions& options) {
+std::vector<Body> bodies_in_cell(std::vector<Body> bodies, const IntakeOptions& options,
+                                 std::vector<std::string>& notes) {
   const std::array<bool, 3> along = repeated_axes(options);
   std::vector<Body> all;
   PeriodicCell cell;
@@ -130,7 +157,7 @@ std::vector<Body> bodies_in_cell(std::vector<Body> bodies, const IntakeOptions& 
   }
   for (Body& body : bodies) {
     if (body.name == all.front().name) body.name += "_2";
-    all.push_back(with_copies(std::move(body), cell));
+    all.push_back(with_copies(std::move(body), cell, notes));
   }
   return all;
 }

@@ -27,8 +27,10 @@ Box3 box_of_option(const std::string& text);
 Body box_body(const std::string& name, const Box3& box);
 
 /// The cell, then the bodies, each with all its copies that reach into the cell. `bodies`: mended. Throws OptionError,
-/// InputError for a body that does not reach into it.
-std::vector<Body> bodies_in_cell(std::vector<Body> bodies, const IntakeOptions& options);
+/// InputError for a body that does not reach into it. What goes through the whole cell and on is not repeated that way,
+/// which is said.
+std::vector<Body> bodies_in_cell(std::vector<Body> bodies, const IntakeOptions& options,
+                                 std::vector<std::string>& notes);
 
 /// How surfaces are made of an image that goes on periodically.
 struct PeriodicSurfaces {

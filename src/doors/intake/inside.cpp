@@ -5,6 +5,7 @@
 #include "base/core/utf8.h"
 #include "base/core/wording.h"
 #include "doors/intake/intake.h"
+#include "soup/cells/bodies.h"
 
 #include <algorithm>
 #include <filesystem>
@@ -68,13 +69,14 @@ class Inside {
           "with sheets, lines or points inside, nodes stay on the triangles of the CAD faces: they do not move "
           "to the true geometry");
       domain_.geometry = nullptr;
-      domain_.true_volumes.clear();
+      domain_.true_volumes.clear(), domain_.chord_depths.clear();
     }
     if (sheets_.empty()) return;
     context_.report("sheets", -1);
     domain_.bound.clear();
     domain_.found_clean = 0;
-    take_complex(domain_, options_, embed_sheets(domain_.surface, sheets_, options_.complex, context_));
+    take_complex(domain_, options_,
+                 cells::embed_sheets(domain_.surface, sheets_, options_.complex, elements_to_come(options_), context_));
   }
 
  private:

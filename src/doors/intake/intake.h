@@ -5,6 +5,8 @@
 
 #include <octafront/domain.h>
 
+#include "soup/cells/misfit.h"
+
 #include <string>
 #include <vector>
 
@@ -18,14 +20,16 @@ void note_all(Domain& domain, const IntakeOptions& options, const std::string& s
 /// Makes a complex the surface of the domain; says what regions it has, and their volumes.
 void take_complex(Domain& domain, const IntakeOptions& options, Complex complex);
 
+/// What the options know of the mesh to come.
+cells::ElementsToCome elements_to_come(const IntakeOptions& options);
+
 /// One region alone needs no name: it is "body" then.
 std::string region_name(const Domain& domain, std::size_t region);
 
 /// What is left to do with a CAD file.
 struct CadTaken {
-  bool is_clean = false;           ///< nothing: the domain's surface can be meshed
-  std::vector<Body> bodies = {};   ///< solids to be joined; empty: the domain's surface is to be mended
-  std::vector<double> bound = {};  ///< of these: how near the surface stays
+  bool is_clean = false;          ///< nothing: the domain's surface can be meshed
+  std::vector<Body> bodies = {};  ///< solids to be joined; empty: the domain's surface is to be mended
 };
 
 /// Reads a CAD file into the domain: triangles, patches, names, the true geometry.

@@ -15,6 +15,8 @@ std::string to_json(const Domain& domain) {
   for (std::size_t r = 0; r < domain.volumes.size(); ++r)
     all["input_regions"].push_back({{"name", intake::region_name(domain, r)}, {"volume", domain.volumes[r]}});
   if (!domain.unit.empty()) all["unit"] = domain.unit;
+  for (const IntakeNote& note : domain.notes)
+    if (!note.stage.empty()) all["input_notes"].push_back({{"stage", note.stage}, {"text", note.text}});
   if (domain.dropped_sheet_faces > 0) all["dropped_sheet_faces"] = domain.dropped_sheet_faces;
   return all.dump(-1, ' ', false, Json::error_handler_t::replace);
 }

@@ -44,6 +44,8 @@ constexpr double kVolumeOff = 0.003;
 constexpr double kDepthOfThickness = 0.025, kMuchCurved = 0.6, kMostDeeper = 4;
 /// A part of its volume that a solid may lose where solids are joined by their triangles: these stray about as much.
 constexpr double kMostLost = 0.01;
+/// Elements that are asked to be so many times as large as all of the part were meant for another unit.
+constexpr double kFarLarger = 10;
 
 Overlap overlap_of_solids(ComplexOptions::Overlap asked) {
   switch (asked) {
@@ -59,9 +61,18 @@ Overlap overlap_of_solids(ComplexOptions::Overlap asked) {
   return Overlap::kRefuse;
 }
 
+/// How many millimetres a unit has.
+double millimetres_of(const CadIntake& asked) {
+  return unit_named(asked.unit)->metres / unit_named("mm")->metres;
+}
+
 ReaderOptions reader_options(const IntakeOptions& options) {
   const CadIntake& asked = options.cad;
-  return {overlap_of_solids(options.complex.overlap), asked.heal, asked.keep_going, asked.seconds,
+  return {overlap_of_solids(options.complex.overlap),
+          options.complex.tolerance.value_or(0) * millimetres_of(asked),
+          asked.heal,
+          asked.keep_going,
+          asked.seconds,
           static_cast<std::uint64_t>(asked.memory_gigabytes * 1e9)};
 }
 
@@ -76,9 +87,9 @@ void check_cad_intake(const CadIntake& asked) {
   if (unit_named(asked.unit) == nullptr) throw OptionError(fmt::format("`cad_unit` \"{}\" is not known", asked.unit));
 }
 
-/// How many millimetres a unit has.
-double millimetres_of(const CadIntake& asked) {
-  return unit_named(asked.unit)->metres / unit_named("mm")->metres;
+/// The same in the unit that a model's lengths are in.
+double unit_of(const CadModel& model, const CadIntake& asked) {
+  return model.per_millimetre * millimetres_of(asked);
 }
 
 std::string unit_in_words(const CadModel& model, const CadIntake& asked) {
@@ -88,9 +99,9 @@ std::string unit_in_words(const CadModel& model, const CadIntake& asked) {
   return fmt::format("{}: numbers times {:g} are lengths in \"{}\", as all here", of_file, factor, asked.unit);
 }
 
-/// The edge length that elements will have, millimetres, as far as that is asked for.
+/// The edge length that elements will have, in the model's unit, as far as that is asked for.
 std::optional<double> asked_size(const CadIntake& asked, const CadModel& model) {
-  if (asked.size) return *asked.size * millimetres_of(asked);
+  if (asked.size) return *asked.size * unit_of(model, asked);
   if (!asked.elements) return std::nullopt;
   double volume = 0;
   for (const Solid& solid : model.solids) volume += std::max(0.0, solid.volume);
@@ -207,6 +218,7 @@ class CadIn {
     const double diagonal = distance(opened.lo, opened.hi);
     asked_ = asked_size(options.cad, opened.model);
     size_ = asked_.value_or(kSizeOfDiagonal * diagonal);
+    judge_size(opened.hi - opened.lo);
     deflection_ = std::max(kLeastDeflection * diagonal,
                            std::min(kDeflectionOfSize * size_, kDeflectionOfThickness * least_thickness(opened.model)));
   }
@@ -235,7 +247,8 @@ class CadIn {
 
   Triangulated judged(CadModel model) const {
     Triangulated made{std::move(model), {}, {}};
-    made.groups = group_faces(made.model, options_.cad.keep_edges ? std::nullopt : asked_, options_.cad.apart);
+    made.groups =
+        options_.cad.keep_edges ? faces_as_they_are(made.model) : group_faces(made.model, asked_, options_.cad.apart);
     made.surface = surface_of(made.model, made.groups);
     if (made.model.solids.empty()) return made;
     context_.report("checking", -1);
@@ -268,19 +281,37 @@ class CadIn {
                        made.model.faces.size(), counted(made.groups.names.size(), "patch", "patches")));
     const auto& [faces, edges] = made.collapsed;
     if (edges + faces.size() > 0)
-      note(
-          domain_, options_, "CAD",
-          fmt::format("{} and {} that are tiny against elements of {:.4g} have none of their own{}; `keep_edges` keeps "
-                      "them",
-                      counted(faces.size(), "face"), counted(edges, "edge"), size_ / millimetres_of(options_.cad),
-                      listed(made.model, faces)));
+      note(domain_, options_, "CAD",
+           fmt::format(
+               "{} and {} that are tiny against elements of {:.4g} have none of their own{}; `keep_edges` keeps "
+               "them",
+               counted(faces.size(), "face"), counted(edges, "edge"), in_unit(size_), listed(made.model, faces)));
     const TinyThings tiny = tiny_things(made.model, size_);
     if (tiny.edges + tiny.faces + tiny.narrow_faces > 0)
       note(domain_, options_, "CAD",
            fmt::format("against elements of {:.4g}: {} of {} edges, {} faces and {} narrow ones are tiny (below a "
                        "tenth); the shortest edge is {:.3g}",
-                       size_ / millimetres_of(options_.cad), tiny.edges, made.model.edges.size(), tiny.faces,
-                       tiny.narrow_faces, tiny.shortest_edge / millimetres_of(options_.cad)));
+                       in_unit(size_), tiny.edges, made.model.edges.size(), tiny.faces, tiny.narrow_faces,
+                       in_unit(tiny.shortest_edge)));
+  }
+
+  /// A length of the model in the unit that is asked for.
+  double in_unit(double length) const { return length / unit_of(reader_.opened().model, options_.cad); }
+
+  /// A size far larger than the part is one of another unit.
+  void judge_size(Vec3 extent) const {
+    const double part = std::max({extent.x, extent.y, extent.z});
+    if (!asked_ || !options_.cad.size || !(size_ > kFarLarger * part)) return;
+    const CadModel& model = reader_.opened().model;
+    const std::string found =
+        fmt::format("the size, {:.4g} {}, is {:.3g} times the part, which is {:.4g} {} long", in_unit(size_),
+                    options_.cad.unit, size_ / part, in_unit(part), options_.cad.unit);
+    if (model.unit.empty() && model.format == "BREP" && options_.cad.unit != "mm")
+      throw OptionError(fmt::format(
+          "{}: BREP says no unit, and its numbers are taken as millimetres. `unit` mm and lengths in the unit of the "
+          "file mesh it by its own numbers",
+          found));
+    note(domain_, options_, "CAD", found);
   }
 
   Domain& domain_;
@@ -331,8 +362,8 @@ std::vector<double> curved_areas(const CadModel& model) {
   return areas;
 }
 
-/// How near the surface stays to each solid: by what it is thick.
-std::vector<double> bounds_by_solid(const CadModel& model) {
+/// Domain::chord_depths, in the model's unit: by what a solid is thick.
+std::vector<double> depths_of_solids(const CadModel& model) {
   std::vector<double> bound;
   const std::vector<double> curved = curved_areas(model);
   for (std::size_t s = 0; s < curved.size(); ++s) {
@@ -344,26 +375,9 @@ std::vector<double> bounds_by_solid(const CadModel& model) {
   return bound;
 }
 
-/// Millimetres to the unit that is asked for.
-void convert(std::vector<Vec3>& points, double millimetres) {
-  for (Vec3& p : points) p = p / millimetres;
-}
-
-double bound_beside(const Sides& sides, const std::vector<double>& by_solid) {
-  double least = HUGE_VAL;
-  for (const std::uint32_t s : sides)
-    if (s < by_solid.size()) least = std::min(least, by_solid[s]);
-  return least;
-}
-
-std::vector<double> bounds_of(const CadModel& model) {
-  const std::vector<double> by_solid = bounds_by_solid(model);
-  std::vector<double> bound;
-  for (const std::uint32_t f : model.face_of) {
-    const Sides& sides = model.faces[f].sides;
-    if (sides[0] != kNone || sides[1] != kNone) bound.push_back(bound_beside(sides, by_solid));
-  }
-  return bound;
+/// From the model's unit to the one that is asked for.
+void convert(std::vector<Vec3>& points, double unit) {
+  for (Vec3& p : points) p = p / unit;
 }
 
 /// Patches of joined solids have names of the solids too: back to those of the faces, unless mending made faces that
@@ -402,12 +416,9 @@ CadTaken take_cad(Domain& domain, const IntakeOptions& options, const std::strin
   taken.is_clean = has_solids && made.defects.empty();
   if (made.model.solids.size() == 1) refuse_crossing_solid(made);
   if (!made.defects.empty()) note(domain, options, "CAD", "the triangles are mended: " + made.defects);
-  if (!taken.is_clean && made.model.solids.size() > 1)
-    taken.bodies = bodies_of(made), taken.bound = bounds_by_solid(made.model);
-  if (taken.is_clean) domain.bound = bounds_of(made.model);
-  const double unit = millimetres_of(options.cad);
-  for (double& d : domain.bound) d /= unit;
-  for (double& d : taken.bound) d /= unit;
+  if (!taken.is_clean && made.model.solids.size() > 1) taken.bodies = bodies_of(made);
+  const double unit = unit_of(made.model, options.cad);
+  for (const double d : depths_of_solids(made.model)) domain.chord_depths.push_back(d / unit);
   for (const Solid& solid : made.model.solids) domain.true_volumes.push_back(solid.volume / (unit * unit * unit));
   domain.surface = std::move(made.surface), domain.unit = options.cad.unit;
   convert(domain.surface.points, unit);
@@ -428,8 +439,6 @@ void finish_joined_cad(Domain& domain, const CadTaken& taken, ComplexOptions::Ov
     refuse_overlaps(domain);
   else
     domain.true_volumes = domain.volumes;
-  domain.bound.clear();
-  for (const Sides& sides : domain.surface.sides) domain.bound.push_back(bound_beside(sides, taken.bound));
 }
 
 }  // namespace octafront::intake
@@ -446,7 +455,7 @@ CadInfo read_cad_info(const std::string& file, const IntakeOptions& options, con
   const auto& [lo, hi, model] = reader.opened();
   info.notes.insert(info.notes.end(), model.notes.begin(), model.notes.end());
   info.format = model.format, info.unit = model.unit, info.to_millimetres = model.to_millimetres;
-  const double unit = intake::millimetres_of(options.cad);
+  const double unit = intake::unit_of(model, options.cad);
   info.lengths = options.cad.unit;
   info.box.add(lo / unit), info.box.add(hi / unit);
   const std::vector<std::string> names = cad::solid_names(model);

@@ -12,6 +12,7 @@
 #include "doors/intake/cell.h"
 #include "doors/intake/intake.h"
 #include "sizing/search/budget.h"
+#include "soup/cells/bodies.h"
 
 #include <algorithm>
 #include <filesystem>
@@ -106,6 +107,7 @@ class Intake {
     note_all(domain_, options_, "reading", read.notes);
     Input input{file, std::move(read.surface), std::move(read.regions), std::move(read.voids)};
     input.read.format = std::move(read.format);
+    domain_.sets.insert(domain_.sets.end(), read.sets.begin(), read.sets.end());
     return input;
   }
 
@@ -181,7 +183,7 @@ class Intake {
   Domain joined(std::vector<Body> bodies) {
     context_.report("joining", -1);
     if (asks_for_cell(options_)) put_into_cell(bodies);
-    take_complex(domain_, options_, join_bodies(bodies, complex_, context_));
+    take_complex(domain_, options_, cells::join_bodies(bodies, complex_, elements_to_come(options_), context_));
     return std::move(domain_);
   }
 
@@ -194,7 +196,9 @@ class Intake {
     if (complex_.overlap == Overlap::kFirst) std::reverse(first, bodies.end());
     complex_.overlap = Overlap::kLater;
     complex_.within_first = true;
-    bodies = bodies_in_cell(std::move(bodies), options_);
+    std::vector<std::string> notes;
+    bodies = bodies_in_cell(std::move(bodies), options_, notes);
+    note_all(domain_, options_, "cell", notes);
   }
 
   /// Parts of one surface that have names of their own; in a cell also one part alone.
@@ -230,7 +234,7 @@ class Intake {
   std::optional<Complex> complex_of(const SurfaceMesh& surface) const {
     context_.report("cells", -1);
     if (options_.repair == Repair::kWrap) return std::nullopt;
-    std::optional<Complex> complex = complex_of_walls(surface, complex_, context_);
+    std::optional<Complex> complex = cells::complex_of_walls(surface, complex_, elements_to_come(options_), context_);
     if (complex && is_for_repair(*complex)) complex.reset();
     return complex;
   }
@@ -247,6 +251,7 @@ class Intake {
   /// Keeps what was told so far.
   void take(Domain read) {
     read.notes.insert(read.notes.end(), domain_.notes.begin(), domain_.notes.end());
+    read.sets.insert(read.sets.end(), domain_.sets.begin(), domain_.sets.end());
     domain_ = std::move(read);
   }
 
@@ -328,6 +333,10 @@ void take_complex(Domain& domain, const IntakeOptions& options, Complex complex)
   domain.volumes = std::move(complex.volumes);
   for (std::size_t r = 0; r < domain.volumes.size(); ++r)
     note(domain, options, "", fmt::format("  region \"{}\": volume {:.6g}", region_name(domain, r), domain.volumes[r]));
+}
+
+cells::ElementsToCome elements_to_come(const IntakeOptions& options) {
+  return {options.cad.size, options.cad.elements};
 }
 
 std::string region_name(const Domain& domain, std::size_t region) {

@@ -57,8 +57,9 @@ std::vector<Row<IntakeOptions>> material_rows() {
       intake_row(
           about_intake(
               "tolerance", kGroup,
-              "Several bodies: what is nearer than this comes together; 0: exactly as they are; without a value a "
-              "millionth of the diagonal. Repair: nothing moves farther than this; without a value a thousandth"),
+              "Several bodies: walls nearer to each other than this are one; 0: exactly as they are; without a value "
+              "what facets explain, or a tenth of the size. Repair: nothing moves farther than this; without a value a "
+              "thousandth of the diagonal"),
           [](auto& o) -> auto& { return o.complex.tolerance; }),
   };
 }

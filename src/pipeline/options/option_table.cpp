@@ -103,9 +103,15 @@ std::vector<Row<Options>> surface_rows() {
           of("patches", "Each part of the surface that feature edges enclose becomes a patch", "patches_by_features"),
           [](auto& o) -> auto& { return o.surface.patches_by_features; }),
       row(
-          of("keep_volumes", "Regions of a complex keep the volumes that they have in the input; images do so unasked",
+          of("keep_volumes", "Bodies and regions keep the volumes that they have in the input; images do so unasked",
              {}, "mesh surface"),
           [](auto& o) -> auto& { return o.surface.keep_volumes; }),
+      row(
+          of("volume_tolerance",
+             "Smaller elements where chords would change the volume of a region by more percent; without a value "
+             "volumes are what the sizes make them",
+             {}, "mesh"),
+          [](auto& o) -> auto& { return o.surface.volume_tolerance; }),
       row(
           of("periodic",
              "Axes along which the body is one cell of a periodic one, such as x or xyz: opposite faces of its "
@@ -232,7 +238,9 @@ std::vector<Row<Options>> improve_rows() {
       row(
           of("sweeps", "Sweeps of the paper's weighted Laplacian"), [](auto& o) -> auto& { return o.improve.sweeps; }),
       opposite(
-          of("fix_boundary", "No vertex of the boundary slides on the surface, no edge turns", "move_boundary"),
+          about(
+              "fix_boundary", "move_boundary", "Improvement", "mesh improve adapt",
+              "No vertex of the boundary slides on the surface, no edge turns; adapt: its triangles stay as they are"),
           [](auto& o) -> auto& { return o.improve.move_boundary; }),
       row(
           of("improve_time", "Seconds after which no further pass begins (then not repeatable)", "seconds"),
@@ -251,11 +259,35 @@ std::vector<Row<Options>> improve_rows() {
   };
 }
 
+std::vector<Row<Options>> require_rows() {
+  const auto of = [](std::string_view name, std::string_view help, std::string_view tasks) {
+    return about(name, name, "Requirements", tasks, help);
+  };
+  return {
+      row(
+          of("require_volume",
+             "Percent by which the volume of each region may differ from the input's, or the run fails",
+             "mesh improve adapt"),
+          [](auto& o) -> auto& { return o.require.volume; }),
+      row(
+          of("require_angle", "Degrees that each dihedral angle has at least, or the run fails", "mesh improve adapt"),
+          [](auto& o) -> auto& { return o.require.angle; }),
+      row(
+          of("require_size", "Times the size wanted there that no edge is longer than, or the run fails; 1 or more",
+             "mesh adapt"),
+          [](auto& o) -> auto& { return o.require.size; }),
+  };
+}
+
 std::vector<Row<Options>> adapt_rows() {
   const auto of = [](std::string_view name, std::string_view help) {
     return about(name, name, "Adaptation", "adapt", help);
   };
   return {
+      row(
+          about("no_bridging", "no_bridging", "Improvement", "mesh improve adapt",
+                "Elements with all corners on walls (boundary, walls between regions) get a vertex inside"),
+          [](auto& o) -> auto& { return o.improve.no_bridging; }),
       row(
           of("only",
              "Places that may change, with semicolons between: box:X0,Y0,Z0,X1,Y1,Z1, sphere:X,Y,Z,R, or names of "
@@ -264,13 +296,19 @@ std::vector<Row<Options>> adapt_rows() {
       row(
           of("halo", "Layers of elements around the places of `only` that may change, too"),
           [](auto& o) -> auto& { return o.adapt.halo; }),
+      row(
+          of("keep",
+             "Faces, edges and vertices that stay as they are, with semicolons between: names of patches, curves and "
+             "sets, of a region the walls around it, or numbers of patches"),
+          [](auto& o) -> auto& { return o.adapt.keep; }),
   };
 }
 
 const std::vector<Row<Options>>& rows() {
   static const std::vector<Row<Options>> all = [] {
     std::vector<Row<Options>> list;
-    for (const auto& part : {size_rows(), surface_rows(), layer_rows(), volume_rows(), improve_rows(), adapt_rows()})
+    for (const auto& part :
+         {size_rows(), surface_rows(), layer_rows(), volume_rows(), improve_rows(), adapt_rows(), require_rows()})
       list.insert(list.end(), part.begin(), part.end());
     return list;
   }();

@@ -5,15 +5,22 @@
 #include <octafront/validity.h>
 
 #include "adapt/metric/background.h"
+#include "adapt/metric/expected.h"
 #include "adapt/schedule/adapt_mesh.h"
+#include "adapt/schedule/rim_metric.h"
 #include "adapt/schedule/section.h"
 #include "pipeline/stages/adapt_section.h"
 #include "pipeline/stages/adapting.h"
+#include "pipeline/stages/kept_items.h"
+#include "pipeline/stages/kept_volumes.h"
+#include "pipeline/stages/requirements.h"
 #include "pipeline/stages/stages.h"
+#include "pipeline/stages/wall_sizes.h"
 #include "pipeline/stages/walls_apart.h"
 
 #include <cmath>
 #include <memory>
+#include <optional>
 
 #include <fmt/core.h>
 
@@ -49,13 +56,20 @@ void require_adaptable(const TetMesh& mesh, const Run& run) {
 TetMesh linear_and_adaptable(const TetMesh& mesh, Run& run) {
   TetMesh given = mesh;
   make_linear(given);
-  run.stage("check of the input", [&](const Stage&) { require_adaptable(given, run); });
+  run.stage("check of the input", [&](const Stage& stage) {
+    require_adaptable(given, run);
+    if (mesh.is_second_order())
+      stage.note(
+          "elements of second order are taken as linear ones, without their mid-side nodes, and stay so: "
+          "`octafront convert --order 2` bends what is written");
+  });
   return given;
 }
 
 void adapt_whole(const TetMesh& given, const adapt::MetricField& metric, const adapt::AdaptRules& rules,
                  AdaptedMesh& result, Run& run) {
   run.stage("adapt", [&](const Stage& stage) {
+    require_budget(adapt::expected_tets(given, metric), stage);
     result.before = summary_of(adapt::fit_of(given, metric));
     adapt::Adapted made = adapted_with_walls_apart(given, metric, rules, stage);
     result.deviation = deviation_of(made);
@@ -69,20 +83,42 @@ void adapt_whole(const TetMesh& given, const adapt::MetricField& metric, const a
   check_result(result.mesh, nullptr, run);
 }
 
-AdaptedMesh adapt_by(const TetMesh& given, const adapt::MetricField& metric, const Domain* surface, Run& run) {
+void divide_bridges_of(const TetMesh& given, const adapt::MetricField& metric, AdaptedMesh& result, Run& run) {
+  if (!run.options.improve.no_bridging) return;
+  divide_bridges(result.mesh, run);
+  result.old_of_new.resize(result.mesh.points.size(), kNone);
+  result.old_tet_of_new = adapt::same_tets(given, result.mesh, result.old_of_new);
+  result.after = summary_of(adapt::fit_of(result.mesh, metric));
+}
+
+AdaptedMesh adapt_by(TetMesh& given, const adapt::MetricField& wanted, const Domain* surface, Run& run) {
   AdaptedMesh result;
   const double diagonal = bounding_box(given.points).diagonal();
   const auto home = given_surface(surface, diagonal, run);
-  const adapt::AdaptRules rules = rules_of(run.options, diagonal, home ? &*home : nullptr);
+  adapt::AdaptRules rules = rules_of(run.options, diagonal, home ? &*home : nullptr);
+  const KeptItems kept =
+      run.stage("kept items", [&](const Stage& stage) { return add_kept_items(given, run.options, stage); });
+  rules.kept_sets = kept.sets;
+  const auto tolerances = add_wall_sizes(given, run.options, rules.tolerance, diagonal);
+  rules.tolerances = tolerances;
+  std::optional<adapt::RimMetric> rim;
+  if (!kept.faces.empty()) rim.emplace(given, kept.faces, wanted);
+  const adapt::MetricField& metric = rim ? *rim : wanted;
   run.report.input_volume = enclosed_volume(boundary_of(given));
   const bool all = run.options.adapt.only.empty();
   (all ? adapt_whole : adapt_section)(given, metric, rules, result, run);
+  drop_kept_items(result.mesh, kept);
+  divide_bridges_of(given, metric, result, run);
   run.stage("summary", [&](const Stage& stage) {
     tell_fit(result.after, stage);
     tell_unmet(result.after, result.deviation, surface != nullptr, stage);
     describe(result.mesh, run.report);
+    describe_volumes_of(given, run.report);
+    note_volumes_of_mesh(run.report, stage);
+    note_least(run.report, stage);
   });
   result.report = run.close();
+  require_of(result.mesh, longest_edge(result.after), run.options.require, result.report);
   return result;
 }
 
@@ -91,7 +127,7 @@ AdaptedMesh adapt_by(const TetMesh& given, const adapt::MetricField& metric, con
 AdaptedMesh adapt_existing(const TetMesh& mesh, const Options& options, const RunContext& context,
                            const Domain* surface) {
   Run run(options, context);
-  const TetMesh given = linear_and_adaptable(mesh, run);
+  TetMesh given = linear_and_adaptable(mesh, run);
   const adapt::SizeMetric metric(sizes_for(boundary_of(given), run));
   return adapt_by(given, metric, surface, run);
 }
@@ -99,7 +135,7 @@ AdaptedMesh adapt_existing(const TetMesh& mesh, const Options& options, const Ru
 AdaptedMesh adapt_to_metric(const TetMesh& mesh, const MetricFunction& metric, const Options& options,
                             const RunContext& context, const Domain* surface) {
   Run run(options, context);
-  const TetMesh given = linear_and_adaptable(mesh, run);
+  TetMesh given = linear_and_adaptable(mesh, run);
   return adapt_by(given, MetricOfFunction(metric), surface, run);
 }
 
@@ -107,7 +143,7 @@ AdaptedMesh adapt_to_metric(const TetMesh& mesh, const MetricMesh& metric, const
                             const RunContext& context, const Domain* surface) {
   Run run(options, context);
   const adapt::BackgroundMetric field(metric);
-  const TetMesh given = linear_and_adaptable(mesh, run);
+  TetMesh given = linear_and_adaptable(mesh, run);
   return adapt_by(given, field, surface, run);
 }
 

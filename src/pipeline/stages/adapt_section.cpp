@@ -3,6 +3,7 @@
 #include <octafront/error.h>
 #include <octafront/validity.h>
 
+#include "adapt/metric/expected.h"
 #include "adapt/schedule/rim_metric.h"
 #include "adapt/schedule/section.h"
 #include "pipeline/stages/adapting.h"
@@ -79,7 +80,8 @@ void tell_section(const TetMesh& given, std::size_t chosen, std::size_t may_chan
 }  // namespace
 
 WallDeviation deviation_of(const adapt::Adapted& made) {
-  return {made.bound, made.deviation.lower, made.deviation.upper, made.deviation.place};
+  const adapt::Deviation worst = adapt::worst_of(made.deviations);
+  return {worst.bound, worst.lower, worst.upper, worst.place};
 }
 
 void adapt_section(const TetMesh& given, const adapt::MetricField& wanted, const adapt::AdaptRules& asked,
@@ -91,6 +93,7 @@ void adapt_section(const TetMesh& given, const adapt::MetricField& wanted, const
     require_valid_section(given, section, stage);
     const TetMesh part = adapt::closed_part(section.mesh, section.loose);
     const adapt::RimMetric metric(section.mesh, section.frozen, wanted);
+    require_budget(adapt::expected_tets(part, metric), stage);
     result.before = summary_of(adapt::fit_of(part, metric));
     adapt::AdaptRules rules = asked;
     rules.frozen = section.frozen;

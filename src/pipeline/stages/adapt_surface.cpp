@@ -2,21 +2,26 @@
 
 #include <octafront/adapt.h>
 #include <octafront/error.h>
+#include <octafront/named_groups.h>
 #include <octafront/repair.h>
 
 #include "adapt/metric/background.h"
+#include "adapt/metric/expected.h"
 #include "adapt/sheet/adapt_sheet.h"
 #include "base/geometry/self_intersection.h"
 #include "base/mesh/edge_table.h"
 #include "base/mesh/known_surface.h"
 #include "pipeline/stages/adapt_section.h"
 #include "pipeline/stages/adapting.h"
+#include "pipeline/stages/requirements.h"
 #include "pipeline/stages/stages.h"
 #include "sizing/search/make_size_field.h"
 #include "sizing/sources/check_size_options.h"
 
 #include <array>
 #include <map>
+#include <set>
+#include <span>
 #include <string>
 #include <utility>
 #include <vector>
@@ -30,6 +35,7 @@ namespace {
 SurfaceMesh tidied_input(const SurfaceMesh& given, Run& run) {
   if (!run.options.adapt.only.empty())
     throw OptionError("`only` is for meshes of tetrahedra: a surface alone is adapted as a whole");
+  if (run.options.require.angle) throw OptionError("`require_angle` is for meshes of tetrahedra");
   return run.stage("check of the input", [&](const Stage& stage) {
     RepairedSurface tidy = repair_surface(given, stage.context());
     if (tidy.surface.triangles.empty()) throw InputError("the surface has no triangles");
@@ -47,6 +53,19 @@ void renumber_as_given(std::vector<VertexIndex>& numbers, const SurfaceMesh& tid
     for (VertexIndex v = 0; v < given.points.size(); ++v) first.try_emplace(key(given.points[v]), v);
   for (VertexIndex& v : numbers)
     if (v != kNone && !first.empty()) v = first.at(key(tidy.points[v]));
+}
+
+/// The vertices that sets want to stay.
+std::vector<VertexIndex> kept_vertices(const SurfaceMesh& surface, std::span<const PlacedSet> sets) {
+  const auto key = [](Vec3 p) { return std::array{p.x + 0.0, p.y + 0.0, p.z + 0.0}; };
+  std::set<std::array<double, 3>> places;
+  for (const PlacedSet& set : sets)
+    if (keeps_vertices(set))
+      for (const Vec3& p : set.places) places.insert(key(p));
+  std::vector<VertexIndex> kept;
+  for (VertexIndex v = 0; !places.empty() && v < surface.points.size(); ++v)
+    if (places.contains(key(surface.points[v]))) kept.push_back(v);
+  return kept;
 }
 
 bool is_closed(const SurfaceMesh& surface) {
@@ -68,19 +87,22 @@ void tell_crossings(const SurfaceMesh& before, const SurfaceMesh& after, const S
 }
 
 AdaptedSurface adapt_surface_by(const SurfaceMesh& given, const adapt::MetricField& metric, const Domain* home,
-                                Run& run) {
+                                std::span<const PlacedSet> sets, Run& run) {
   AdaptedSurface result;
   const double diagonal = bounding_box(given.points).diagonal();
   const auto on = given_surface(home, diagonal, run);
   const adapt::AdaptRules rules = rules_of(run.options, diagonal, on ? &*on : nullptr);
   const bool closed = is_closed(given);
   if (closed) run.report.input_volume = enclosed_volume(given);
+  const std::vector<VertexIndex> kept = kept_vertices(given, sets);
   run.stage("adapt", [&](const Stage& stage) {
+    require_budget(adapt::expected_triangles(given, metric), stage);
+    if (!kept.empty()) stage.note(fmt::format("{} vertices that the file asks to keep stay as they are", kept.size()));
     result.before = summary_of(adapt::fit_of(given, metric));
-    adapt::AdaptedSheet made = adapt::adapt_sheet(given, metric, rules, stage);
+    adapt::AdaptedSheet made = adapt::adapt_sheet(given, metric, rules, kept, stage);
     require_near(made.given);
     tell_given(made.given, stage);
-    result.deviation = {made.bound, made.deviation.lower, made.deviation.upper, made.deviation.place};
+    result.deviation = {made.deviation.bound, made.deviation.lower, made.deviation.upper, made.deviation.place};
     result.after = summary_of(adapt::fit_of(made.surface, metric));
     tell_crossings(given, made.surface, stage);
     result.surface = std::move(made.surface);
@@ -94,27 +116,28 @@ AdaptedSurface adapt_surface_by(const SurfaceMesh& given, const adapt::MetricFie
     if (closed) run.report.volume = enclosed_volume(result.surface);
   });
   result.report = run.close();
+  require_of({}, longest_edge(result.after), run.options.require, result.report);
   return result;
 }
 
 }  // namespace
 
 AdaptedSurface adapt_surface(const SurfaceMesh& surface, const Options& options, const RunContext& context,
-                             const Domain* home) {
+                             const Domain* home, std::span<const PlacedSet> sets) {
   Run run(options, context);
   const SurfaceMesh tidy = tidied_input(surface, run);
   const adapt::SizeMetric metric(sizes_for(tidy, run));
-  AdaptedSurface made = adapt_surface_by(tidy, metric, home, run);
+  AdaptedSurface made = adapt_surface_by(tidy, metric, home, sets, run);
   renumber_as_given(made.old_of_new, tidy, surface);
   return made;
 }
 
 AdaptedSurface adapt_surface_to_metric(const SurfaceMesh& surface, const MetricMesh& metric, const Options& options,
-                                       const RunContext& context, const Domain* home) {
+                                       const RunContext& context, const Domain* home, std::span<const PlacedSet> sets) {
   Run run(options, context);
   const adapt::BackgroundMetric field(metric);
   const SurfaceMesh tidy = tidied_input(surface, run);
-  AdaptedSurface made = adapt_surface_by(tidy, field, home, run);
+  AdaptedSurface made = adapt_surface_by(tidy, field, home, sets, run);
   renumber_as_given(made.old_of_new, tidy, surface);
   return made;
 }

@@ -4,8 +4,10 @@
 #include <octafront/repair.h>
 
 #include "base/mesh/known_surface.h"
+#include "improve/schedule/without_bridges.h"
 #include "pipeline/stages/stages.h"
 #include "pipeline/stages/true_shape.h"
+#include "sizing/prediction/affordable.h"
 #include "sizing/search/make_size_field.h"
 #include "sizing/sources/check_size_options.h"
 
@@ -63,6 +65,24 @@ SizeField sizes_for(const SurfaceMesh& surface, Run& run) {
     if (const auto bound = run.options.surface.max_deviation; bound && *bound > 0 && !sizes.chord_error && !sizes.field)
       sizes.chord_error = *bound;
     return make_size_field(known, sizes, stage);
+  });
+}
+
+void require_budget(double expected, const Stage& stage) {
+  stage.count("expected elements", expected);
+  require_affordable("what is asked for", expected, "ask for larger elements, or set `min_size`");
+}
+
+void divide_bridges(TetMesh& mesh, Run& run) {
+  if (!run.options.improve.no_bridging) return;
+  run.stage("bridges", [&](const Stage& stage) {
+    const Bridges found = avoid_bridges(mesh, stage);
+    stage.count("elements with all corners on walls", static_cast<double>(found.had));
+    stage.count("new vertices", static_cast<double>(found.vertices));
+    std::string text =
+        fmt::format("{} elements had all corners on walls: {} vertices inside divide them", found.had, found.vertices);
+    if (found.left > 0) text += fmt::format("; {} stay as they are, for their parts would be flat", found.left);
+    if (found.had > 0) stage.note(std::move(text));
   });
 }
 

@@ -20,6 +20,12 @@ adapt::AdaptRules rules_of(const Options& options, double diagonal, const adapt:
 /// The sizes that the options want, asked about a surface.
 SizeField sizes_for(const SurfaceMesh& surface, Run& run);
 
+/// Throws OptionError where sizes or a metric come to more elements than a mesh can hold.
+void require_budget(double expected, const Stage& stage);
+
+/// With options.improve.no_bridging avoid_bridges(); says what it did.
+void divide_bridges(TetMesh& mesh, Run& run);
+
 /// Throws InputError where the surface that was given is near no wall.
 void require_near(const adapt::GivenFit& made);
 /// Says where walls did not come to it.

@@ -5,29 +5,16 @@
 
 #include "base/core/doubles.h"
 #include "base/geometry/measures.h"
+#include "pipeline/stages/named_items.h"
 
 #include <algorithm>
 #include <cmath>
-#include <set>
 #include <string_view>
 
 #include <fmt/core.h>
 
 namespace octafront {
 namespace {
-
-/// Names that a message lists at most.
-constexpr std::size_t kMostNamesListed = 12;
-
-std::vector<std::string> split_at(std::string_view text, char separator) {
-  std::vector<std::string> words(1);
-  for (const char c : text)
-    if (c == separator)
-      words.emplace_back();
-    else
-      words.back() += c;
-  return words;
-}
 
 /// The numbers of "box:1,2,..." behind its colon.
 std::vector<double> numbers_of_place(const std::string& place, std::size_t count) {
@@ -59,7 +46,7 @@ class TetChooser {
     else if (place.starts_with("sphere:"))
       add_sphere(place);
     else if (!add_named(place))
-      refuse(place);
+      refuse_name(mesh_, "only", place, "no box:X0,Y0,Z0,X1,Y1,Z1 or sphere:X,Y,Z,R, and ");
     if (added_ == 0 && count() == before) throw OptionError(fmt::format("`only`: no element is in \"{}\"", place));
   }
   std::vector<std::uint8_t> chosen() && { return std::move(chosen_); }
@@ -101,69 +88,21 @@ class TetChooser {
 
   /// False if nothing is called so.
   bool add_named(const std::string& name) {
-    bool found = false;
-    const auto number_of = [&](const std::vector<std::string>& names) {
-      const auto at = std::find(names.begin(), names.end(), name);
-      found |= at != names.end();
-      return at == names.end() ? kNone : static_cast<std::uint32_t>(at - names.begin());
-    };
-    if (const std::uint32_t r = number_of(mesh_.region_names); r != kNone)
-      add_where([&](TetIndex t) { return (mesh_.region.empty() ? 0 : mesh_.region[t]) == r; });
+    const auto items = items_called(mesh_, name);
+    if (!items) return false;
+    for (const std::uint32_t t : items->tets) chosen_[t] = 1, ++added_;
     std::vector<std::uint8_t> touched(mesh_.points.size(), 0);
     const auto touch = [&](const auto& item) {
       for (const VertexIndex v : item) touched[v] = 1;
     };
-    if (const std::uint32_t p = number_of(mesh_.patch_names); p != kNone) {
-      for (std::size_t f = 0; f < mesh_.boundary.size(); ++f)
-        if ((mesh_.patch.empty() ? 0 : mesh_.patch[f]) == p) touch(mesh_.boundary[f]);
-      for (std::size_t f = 0; f < mesh_.interfaces.size(); ++f)
-        if ((mesh_.interface_patch.empty() ? 0 : mesh_.interface_patch[f]) == p) touch(mesh_.interfaces[f]);
-    }
-    if (const std::uint32_t c = number_of(mesh_.curve_names); c != kNone)
-      for (std::size_t e = 0; e < mesh_.curve_edges.size(); ++e)
-        if ((mesh_.curve.empty() ? 0 : mesh_.curve[e]) == c) touch(mesh_.curve_edges[e]);
-    for (const NamedSet& set : mesh_.sets)
-      if (set.name == name) found = true, add_set(set, touched, touch);
+    const std::size_t outer = mesh_.boundary.size();
+    for (const std::uint32_t v : items->nodes) touched[v] = 1;
+    for (const std::uint32_t e : items->edges) touch(mesh_.curve_edges[e]);
+    for (const std::uint32_t f : items->faces) touch(f < outer ? mesh_.boundary[f] : mesh_.interfaces[f - outer]);
     add_where([&](TetIndex t) {
       return std::any_of(mesh_.tets[t].begin(), mesh_.tets[t].end(), [&](VertexIndex v) { return touched[v] != 0; });
     });
-    return found;
-  }
-  template <class Touch>
-  void add_set(const NamedSet& set, std::vector<std::uint8_t>& touched, const Touch& touch) {
-    const std::size_t outer = mesh_.boundary.size();
-    for (const std::uint32_t m : set.members) switch (set.kind) {
-        case NamedSet::Kind::kNodes:
-          touched[m] = 1;
-          break;
-        case NamedSet::Kind::kEdges:
-          touch(mesh_.curve_edges[m]);
-          break;
-        case NamedSet::Kind::kFaces:
-          touch(m < outer ? mesh_.boundary[m] : mesh_.interfaces[m - outer]);
-          break;
-        case NamedSet::Kind::kElements:
-          chosen_[m] = 1, ++added_;
-      }
-  }
-
-  [[noreturn]] void refuse(const std::string& place) const {
-    std::set<std::string> names;
-    for (const auto* list : {&mesh_.region_names, &mesh_.patch_names, &mesh_.curve_names})
-      names.insert(list->begin(), list->end());
-    for (const NamedSet& set : mesh_.sets) names.insert(set.name);
-    names.erase("");
-    std::string list;
-    std::size_t listed = 0;
-    for (const std::string& name : names) {
-      if (listed++ == kMostNamesListed) break;
-      list += (list.empty() ? "" : ", ") + name;
-    }
-    if (names.size() > kMostNamesListed) list += ", ...";
-    throw OptionError(
-        fmt::format("`only`: \"{}\" is no box:X0,Y0,Z0,X1,Y1,Z1 or sphere:X,Y,Z,R, and the mesh has no "
-                    "region, patch, curve or set of that name; it has {}",
-                    place, list.empty() ? "no names" : list));
+    return true;
   }
 
   const TetMesh& mesh_;

@@ -75,9 +75,16 @@ auto meet_target(const SizeField& sizes, Run& run, std::size_t first_stage, int 
 void note_missed_target(double count, const char* counted, Run& run) {
   const auto& wanted = run.options.size.elements;
   if (!wanted || std::abs(count / static_cast<double>(*wanted) - 1) <= kElementsPromised) return;
-  run.report.stages.back().notes.push_back(
-      fmt::format("{} elements were wanted; the {} do not allow it: {:.0f} {}", *wanted,
-                  keeps_surface(run.options) ? "kept triangles" : "features and size limits", count, counted));
+  Finding found;
+  found.code = "elements-missed";
+  found.text = fmt::format(
+      "{} elements were wanted; {:.0f} {}: {}", *wanted, count, counted,
+      keeps_surface(run.options)
+          ? "the kept triangles do not allow it"
+          : "no factor on the sizes that was tried came nearer, for features, details of the surface and limits on the "
+            "size decide there. `min_size`, fewer of these, or another number help");
+  found.values = {{"wanted", static_cast<double>(*wanted)}, {"elements", count}};
+  run.report.stages.back().note(std::move(found));
 }
 
 TriedSizes<Remeshed> surface_to_target(const Prepared& input, SizeField sizes, Run& run) {

@@ -1,6 +1,7 @@
 #include <octafront/error.h>
 #include <octafront/generate.h>
 #include <octafront/inside.h>
+#include <octafront/limits.h>
 #include <octafront/named_groups.h>
 #include <octafront/split.h>
 
@@ -8,17 +9,22 @@
 #include "base/core/wording.h"
 #include "base/shared/shared_tets.h"
 #include "pipeline/inside/fins.h"
+#include "pipeline/stages/adapting.h"
 #include "pipeline/stages/agreement.h"
 #include "pipeline/stages/checkpoint.h"
 #include "pipeline/stages/kept_shape.h"
+#include "pipeline/stages/kept_volumes.h"
 #include "pipeline/stages/measure.h"
 #include "pipeline/stages/methods.h"
 #include "pipeline/stages/periodic.h"
+#include "pipeline/stages/requirements.h"
 #include "pipeline/stages/shell.h"
 #include "pipeline/stages/stages.h"
 #include "pipeline/stages/true_shape.h"
+#include "pipeline/stages/volume_tolerance.h"
 
 #include <algorithm>
+#include <optional>
 #include <string>
 #include <utility>
 #include <vector>
@@ -44,9 +50,6 @@ SizeField choose_sizes(const Prepared& input, const Domain& domain, const Option
   return sizes;
 }
 
-/// So often a mesh is made with smaller bounds where solids do not keep their volume.
-constexpr int kTriesOfBounds = 3;
-
 /// Curves where patches meet, and what stands on fins in their place.
 void finish_curves(TetMesh& mesh, Fins* fins, Run& run) {
   if (fins == nullptr) return add_patch_curves(mesh);
@@ -54,6 +57,14 @@ void finish_curves(TetMesh& mesh, Fins* fins, Run& run) {
     fins->leave(mesh);
     add_patch_curves(mesh);
     for (std::string& note : fins->enter(mesh)) stage.note(std::move(note));
+  });
+}
+
+void place_sets(const Domain& domain, TetMesh& mesh, Run& run) {
+  if (domain.sets.empty()) return;
+  run.stage("sets", [&](const Stage& stage) {
+    if (const std::string missing = add_placed_sets(mesh, domain.sets); !missing.empty())
+      stage.note(missing + "; with `keep_surface` those of the surface stay");
   });
 }
 
@@ -77,8 +88,9 @@ void improve_or_read(const Prepared& input, Filled& filled, Run& run) {
 
 /// Whether what follows improvement looks at elements of all ranks together.
 bool wants_all(const Domain& domain, const Options& options, const Fins* fins) {
-  return domain.geometry || !domain.true_volumes.empty() || fins != nullptr || options.order > 1 ||
-         options.volume.shell != 0 || !options.split.empty();
+  return domain.geometry || !domain.true_volumes.empty() || !domain.sets.empty() || fins != nullptr ||
+         options.order > 1 || options.improve.no_bridging || options.volume.shell != 0 || !options.split.empty() ||
+         options.surface.keep_volumes || requires_something(options.require);
 }
 
 /// `fins`: of the domain's lines and points, which it has as sheets; null: it has none.
@@ -92,20 +104,25 @@ Result generate_once(const Domain& domain, const Options& asked, const RunContex
   agree_on(input.surface.mesh(), "repaired input", context);
   check_split(input.surface.mesh(), names_listed(options.split, input.surface.mesh().patch_names));
   const SizeField sizes = choose_sizes(input, domain, asked, run);
+  require_expected_elements(run.report.expected_tets);
   agree_on(sizes, input.surface.mesh().points, "size field", context);
   Checkpoint checkpoint(checkpoints, input, sizes, run);
   run.checkpoint = &checkpoint;
   Filled filled = fill_to_target(input, sizes, run);
+  require_elements(static_cast<double>(filled.mesh.tets.size()), "the mesh");
   agree_on(filled, "mesh as it was filled", context);
   improve_or_read(input, filled, run);
   agree_on(filled, "improved mesh", context);
   if (wants_all(domain, options, fins)) make_whole(filled, run);
   if (!options.layers.outside) add_layers(input, filled, run);
   note_missed_elements(filled, run);
-  check_shape(input, filled, run);
   layer_walls(filled, run);
   place_on_geometry(input, filled, run);
+  keep_mesh_volumes(input, wanted_volumes(input, domain), filled, run);
+  check_shape(input, filled, run);
   if (options.layers.outside) add_layers(input, filled, run);
+  refuse_lost_volumes(domain, filled, run);
+  divide_bridges(filled.mesh, run);
   raise_order(input, filled, run);
   agree_on(filled, "mesh", context);
   name_patches(input, filled);
@@ -113,18 +130,20 @@ Result generate_once(const Domain& domain, const Options& asked, const RunContex
   pair_nodes(input, filled.mesh, run);
   check_result(filled, run);
   finish_curves(filled.mesh, fins, run);
+  place_sets(domain, filled.mesh, run);
   split(filled.mesh, run);
-  describe(filled.mesh, run.report, comm_of(filled, run));
-  run.comm().agree(run.report.hash, "mesh at the end");
-  describe_true_volumes(filled, domain, run.report);
-  if (!filled.layers) describe_sizes(filled.mesh, filled.boundary.sizes, run.report, comm_of(filled, run));
+  run.stage("summary", [&](const Stage& stage) {
+    describe(filled.mesh, run.report, comm_of(filled, run));
+    require_elements(static_cast<double>(run.report.tets), "the mesh");
+    run.comm().agree(run.report.hash, "mesh at the end");
+    describe_true_volumes(filled, domain, run.report);
+    describe_input_volumes(input, filled, run.report);
+    if (!filled.layers) describe_sizes(filled.mesh, filled.boundary.sizes, run.report, comm_of(filled, run));
+    note_volumes(input, filled, run.options, run.report, stage);
+    note_least(run.report, stage);
+  });
   if (context.ranks == nullptr || !context.ranks->shares_tets) make_whole(filled, run);
   return {std::move(filled.mesh), filled.boundary.sizes, run.close(), filled.tets == Tets::kShare};
-}
-
-/// Whether smaller bounds would be heard: they are not where the user bounds the deviation, or keeps the triangles.
-bool heeds_bounds(const Options& options) {
-  return !keeps_surface(options) && !options.surface.max_deviation && traits_of(options.method).has_front;
 }
 
 /// Lines and points by the sizes that there would be without them, and those that are asked for them by name.
@@ -146,29 +165,16 @@ Domain with_sheets(const Domain& domain, const Fins& fins, const RunContext& con
   with.surface = embed_sheets(domain.surface, fins.sheets(), {}, context).surface;
   with.bound.clear();
   with.geometry = nullptr;
-  with.true_volumes.clear();
+  with.true_volumes.clear(), with.chord_depths.clear();
   return with;
 }
 
 /// generate() of a domain without lines and points, or with fins for them.
 Result generate_in(const Domain& domain, const Options& asked, const RunContext& context, Fins* fins,
                    const Checkpoints& checkpoints) {
-  Result made = generate_once(domain, asked, context, fins, checkpoints);
-  std::vector<OffSolid> off = off_solids(domain, made.report);
-  if (off.empty()) return made;
-  Domain nearer = domain;
-  for (int k = 0; k < kTriesOfBounds && !off.empty() && heeds_bounds(asked); ++k) {
-    std::string why = "volumes were off, so elements were made smaller there: " + in_words(domain, off);
-    nearer.bound = tightened(nearer, off);
-    made = generate_once(nearer, asked, context, fins, checkpoints);
-    made.report.stages.front().notes.push_back(std::move(why));
-    off = off_solids(domain, made.report);
-  }
-  if (off.empty()) return made;
-  throw MeshingError(
-      fmt::format("the mesh does not keep the volumes of the CAD solids within {:g} %: {}. {}", 100 * kVolumeKept,
-                  in_words(domain, off),
-                  asked.size.elements ? "Ask for more elements" : "Give a smaller size, or a smaller `max_deviation`"));
+  const auto make = [&](const Domain& of) { return generate_once(of, asked, context, fins, checkpoints); };
+  const std::optional<double>& percent = asked.surface.volume_tolerance;
+  return percent ? with_volumes_within(*percent, domain, make) : make(domain);
 }
 
 }  // namespace
@@ -192,14 +198,29 @@ Result generate(const Domain& domain, const Options& asked, const RunContext& co
   return generate_with({}, domain, asked, context);
 }
 
-Result generate_with(const Checkpoints& checkpoints, const Domain& domain, const Options& asked,
-                     const RunContext& context) {
-  open_checkpoint(checkpoints, domain, asked, context);
+namespace {
+
+/// generate_with(), whatever is required of the mesh.
+Result generate_freely(const Checkpoints& checkpoints, const Domain& domain, const Options& asked,
+                       const RunContext& context) {
   if (domain.wires.empty() && domain.points.empty()) return generate_in(domain, asked, context, nullptr, checkpoints);
   if (!traits_of(asked.method).fills_complexes)
     throw OptionError("this method has no lines and points inside: choose method octree-aft");
   Fins fins = fins_of(domain, asked, context);
-  return generate_in(with_sheets(domain, fins, context), asked, context, &fins, checkpoints);
+  Options options = asked;
+  if (!options.size.field)
+    options.size.regions.insert(options.size.regions.end(), fins.narrow().begin(), fins.narrow().end());
+  return generate_in(with_sheets(domain, fins, context), options, context, &fins, checkpoints);
+}
+
+}  // namespace
+
+Result generate_with(const Checkpoints& checkpoints, const Domain& domain, const Options& asked,
+                     const RunContext& context) {
+  open_checkpoint(checkpoints, domain, asked, context);
+  Result made = generate_freely(checkpoints, domain, asked, context);
+  require_of(made.mesh, longest_edge(made.mesh, made.sizes, asked.require), asked.require, made.report);
+  return made;
 }
 
 SurfaceResult generate_surface(const Domain& domain, const Options& asked, const RunContext& context) {
@@ -209,10 +230,12 @@ SurfaceResult generate_surface(const Domain& domain, const Options& asked, const
   const SizeField sizes = choose_sizes(input, domain, asked, run);
   Remeshed made = triangulate_to_target(input, sizes, run);
   name_closed_patch(input.closed, input.surface.tree(), made.surface);
+  require_elements(static_cast<double>(made.surface.triangles.size()), "the surface");
   run.report.points = made.surface.points.size();
   run.report.boundary_faces = made.surface.triangles.size();
   run.report.volume = enclosed_volume(made.surface);
   run.report.surface_edges = summarize_surface_edges(made.surface.points, made.surface.triangles, made.sizes);
+  note_volumes(input, made.surface, options, Stage(context, run.report.stages.back()));
   return {std::move(made.surface), made.sizes, run.close()};
 }
 
@@ -222,6 +245,7 @@ SizeResult generate_sizes(const Domain& domain, const Options& asked, const RunC
   const Prepared input = prepare(domain, run);
   SizeField sizes = choose_sizes(input, domain, asked, run);
   if (traits_of(options.method).has_front) sizes = triangulate_to_target(input, sizes, run).sizes;
+  require_expected_elements(run.report.expected_tets);
   return {std::move(sizes), run.close()};
 }
 

@@ -7,8 +7,11 @@
 #include "sizing/field/change_size_field.h"
 #include "sizing/prediction/expected_tets.h"
 #include "sizing/sources/curvature.h"
+#include "sizing/sources/model_extent.h"
+#include "surface/remeshing/keep_volumes.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 
 #include <fmt/core.h>
@@ -21,6 +24,9 @@ namespace {
 /// but to no less than this part of themselves, so often.
 constexpr double kAim = 0.5, kLeastScale = 0.4;
 constexpr int kTries = 2;
+/// Up to here a slender body gets its volume back by moves of vertices, of a tenth of their edges or so: smaller
+/// elements would be many times as many.
+constexpr double kGivenBack = 0.1;
 /// Predictions of so many bounds are believed, without a surface that would be made in vain.
 constexpr double kHopeless = 3;
 /// Vertices that leave the surface, and chords between them, lie within so many bounds on deviation.
@@ -50,6 +56,25 @@ bool is_hopeless(const Prepared& input, const SizeField& sizes, double budget, c
   return true;
 }
 
+/// Whether a slender body's surface has the volume again by moves of its vertices; it stays as it is then.
+bool give_volume_back(Remeshed& made, const Prepared& input, const Run& run, const Stage& stage) {
+  const auto change = [&](const SurfaceMesh& surface) {
+    return change_of_volume(enclosed_volume(surface), run.report.input_volume);
+  };
+  // Opposite faces of a cell stay copies of each other.
+  if (!run.options.periodic.empty()) return false;
+  const double lost = change(made.surface);
+  if (std::abs(lost) > kGivenBack || slenderness(input.surface.mesh()) < kSlender) return false;
+  SurfaceMesh pressed = made.surface;
+  const std::array<double, 1> wanted{run.report.input_volume};
+  remeshing::keep_volumes_clean(pressed, made.features, wanted, {}, stage.context());
+  if (is_off(change(pressed))) return false;
+  stage.note(fmt::format("the automatic sizes change the volume by {:+.1f} %: vertices were moved to give it back",
+                         100 * lost));
+  made.surface = std::move(pressed);
+  return made.stays = true;
+}
+
 Remeshed input_that_stays(const Prepared& input, const SizeField& sizes) {
   Remeshed kept = input_as_it_is(input.surface, sizes);
   kept.stays = true;
@@ -68,6 +93,7 @@ Remeshed remeshed_in_shape(const Prepared& input, const SizeField& sizes, const 
   if (is_hopeless(input, sizes, budget, stage)) return input_that_stays(input, sizes);
   Remeshed made = remesh(sizes);
   const auto change = [&] { return change_of_volume(enclosed_volume(made.surface), run.report.input_volume); };
+  if (is_off(change()) && give_volume_back(made, input, run, stage)) return made;
   double scale = 1;
   for (int k = 0; k < kTries && is_off(change()); ++k) {
     scale *= std::max(kLeastScale, std::sqrt(kAim * kVolumeKept / std::abs(change())));
@@ -102,16 +128,8 @@ void improve_in_shape(const Prepared& input, Filled& filled, Run& run) {
 void check_shape(const Prepared& input, const Filled& filled, Run& run) {
   if (keeps_surface(run.options) || traits_of(run.options.method).makes_own_boundary()) return;
   const SurfaceMesh &before = input.surface.mesh(), &after = filled.boundary.surface;
-  if (is_complex(before)) return;
+  if (is_complex(before) || !has_automatic_sizes(run.options)) return;
   const double change = change_of_volume(enclosed_volume(after), run.report.input_volume);
-  if (!has_automatic_sizes(run.options)) {
-    if (is_off(change))
-      run.report.stages.back().notes.push_back(
-          fmt::format("elements of this size change the volume by {:+.1f} %: `max_deviation` makes them smaller where "
-                      "they stray from the input",
-                      100 * change));
-    return;
-  }
   if (is_off(change))
     throw MeshingError(
         fmt::format("the mesh has {:.4g} % of the input's volume. Give a size, or keep the surface's own "

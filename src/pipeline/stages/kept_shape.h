@@ -27,7 +27,7 @@ Remeshed remeshed_in_shape(const Prepared& input, const SizeField& sizes, const 
 void improve_in_shape(const Prepared& input, Filled& filled, Run& run);
 
 /// Throws MeshingError if sizes are automatic and the volume of a single surface is out by more than kVolumeKept still,
-/// or its extent by more than it may stray; notes what other sizes have cost.
+/// or its extent by more than it may stray.
 void check_shape(const Prepared& input, const Filled& filled, Run& run);
 
 }  // namespace octafront

@@ -55,6 +55,7 @@ struct UnpackFrom {
 template <class Mesh, class Each>
 void members_of_mesh(Mesh& m, const Each& each) {
   each(m.points), each(m.tets), each(m.region), each(m.region_names), each(m.region_labels), each(m.boundary);
+  each(m.patch_labels), each(m.curve_labels);
   each(m.patch), each(m.source), each(m.patch_names), each(m.interfaces), each(m.interface_patch), each(m.curve_edges);
   each(m.curve), each(m.curve_names), each(m.mid_nodes), each(m.sets), each(m.wide_cells), each(m.wide_faces);
   each(m.periods), each(m.period_rotations), each(m.periodic_nodes), each(m.face_layers), each(m.split_faces);
@@ -63,7 +64,7 @@ void members_of_mesh(Mesh& m, const Each& each) {
 template <class Surface, class Each>
 void members_of_surface(Surface& s, const Each& each) {
   each(s.points), each(s.triangles), each(s.patch), each(s.patch_names), each(s.source), each(s.sides);
-  each(s.region_names), each(s.region_labels);
+  each(s.region_names), each(s.region_labels), each(s.patch_labels);
 }
 
 /// All but the sizes.

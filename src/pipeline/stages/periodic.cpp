@@ -283,6 +283,7 @@ void unite_patches(TetMesh& mesh, const PeriodicCell& cell) {
   for (std::uint32_t& p : mesh.patch) p = number[p];
   for (std::uint32_t& p : mesh.interface_patch) p = number[p];
   mesh.patch_names = std::move(names);
+  mesh.patch_labels.clear();
 }
 
 }  // namespace

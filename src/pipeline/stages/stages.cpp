@@ -2,6 +2,7 @@
 
 #include <octafront/error.h>
 #include <octafront/generate.h>
+#include <octafront/limits.h>
 #include <octafront/validity.h>
 
 #include "base/core/parallel.h"
@@ -19,6 +20,7 @@
 #include "pipeline/stages/checkpoint.h"
 #include "pipeline/stages/follow_boundary.h"
 #include "pipeline/stages/kept_shape.h"
+#include "pipeline/stages/kept_volumes.h"
 #include "pipeline/stages/measure.h"
 #include "pipeline/stages/methods.h"
 #include "pipeline/stages/periodic.h"
@@ -75,7 +77,7 @@ void refuse_complex_for_method(const SurfaceMesh& surface, Method method) {
 // Defects are refused, but by the octree method, which lives with them: then they are notes.
 SurfaceDomain::Defects judge_defects(const SurfaceDefects& found, Method method, const Stage& stage) {
   if (found.clean()) return SurfaceDomain::Defects::kClean;
-  if (traits_of(method).needs_clean || found.no_faces) throw InputError(found.describe());
+  if (traits_of(method).needs_clean || found.no_faces) throw DefectsError(found);
   stage.note("the surface has defects; inside is where its winding number says so. " + found.describe());
   const bool closed =
       found.open_edges.count == 0 && found.non_manifold_edges.count == 0 && found.misoriented_edges.count == 0;
@@ -108,6 +110,9 @@ double budget_of(const SurfaceMesh& surface, const Options& options) {
 // Where sizes are given, detail is what is smaller than this part of them.
 constexpr double kDetail = 0.1;
 
+// Of true geometry a size that is given follows curvature by so many elements a turn, as is usual with CAD.
+constexpr double kTurnsOfGeometry = 12;
+
 // Of a deviation that the user bounds, what unfolding may use up: the new surface keeps the rest, and improvement too.
 constexpr double kUnfolded = 0.25;
 
@@ -131,22 +136,10 @@ double detail_tolerance(const SurfaceMesh& surface, const Options& options, doub
   return keeps_all ? 0 : scale_of_detail(surface, options, part);
 }
 
-// A part of the volume of a clean surface that the octree method may miss without a word: its boundary is blunt.
-constexpr double kVolumeTolerance = 0.03;
-
-void note_lost_volume(const TetMesh& mesh, const Prepared& p, const Stage& stage) {
-  if (p.defects != SurfaceDomain::Defects::kClean) return;
-  const double share = enclosed_volume(boundary_of(mesh)) / enclosed_volume(p.surface.mesh());
-  if (std::abs(share - 1) > kVolumeTolerance)
-    stage.note(
-        fmt::format("the mesh has {:.1f} % of the volume inside the surface: parts thinner than an "
-                    "element are lost. Ask for smaller elements, or for a `gap` of 2 or more.",
-                    100 * share));
-}
-
 // The boundary of a stuffed mesh in the place of a triangulated surface.
 Remeshed boundary_of_stuffed(const TetMesh& mesh, const SizeField& sizes, double feature_angle) {
   SurfaceMesh surface{{}, mesh.boundary, mesh.patch, mesh.patch_names, {}};
+  surface.patch_labels = mesh.patch_labels;
   VertexIndex vertices = 0;
   for (const Triangle& t : surface.triangles) vertices = std::max(vertices, 1 + std::max({t[0], t[1], t[2]}));
   surface.points.assign(mesh.points.begin(), mesh.points.begin() + vertices);
@@ -159,7 +152,6 @@ Filled stuff(const Prepared& input, const SizeField& sizes, Run& run) {
   TetMesh mesh = run.stage(traits_of(run.options.method).stage, [&](const Stage& stage) {
     TetMesh stuffed = stuff_surface(input.surface.mesh(), input.surface.features(), input.defects, sizes, stage);
     stage.count("tets", static_cast<double>(stuffed.tets.size()));
-    note_lost_volume(stuffed, input, stage);
     return stuffed;
   });
   for (std::uint32_t& triangle : mesh.source) triangle = input.surface.mesh().source_of(triangle);
@@ -297,11 +289,15 @@ Prepared prepare(const SurfaceMesh& soup, const Domain* mended, bool is_clean, R
     stage.count("triangles", static_cast<double>(repaired.surface.triangles.size()));
     stage.count("bodies", repaired.bodies);
     stage.count("cavities", repaired.cavities);
-    if (!repaired.surface.sides.empty()) divide_by_sides(examined.repaired.surface);
+    if (is_complex(repaired.surface)) divide_by_sides(examined.repaired.surface);
+    // One region that touches itself goes the way of complexes, where each triangle has a patch.
+    if (!repaired.surface.sides.empty()) examined.repaired.surface.patch.resize(repaired.surface.triangles.size(), 0);
     clean_names(examined.repaired.surface, stage);
     return examined;
   });
   run.report.input_volume = enclosed_volume(found.repaired.surface);
+  std::vector<double> volumes;
+  if (defects == SurfaceDomain::Defects::kClean) volumes = volumes_of_regions(found.repaired.surface);
   const bool is_plain = found.repaired.surface.sides.empty();
   std::vector<double> moved;
   // Folds at faces of a periodic cell would come off one of them alone.
@@ -321,8 +317,12 @@ Prepared prepare(const SurfaceMesh& soup, const Domain* mended, bool is_clean, R
   run.report.bodies = found.repaired.bodies;
   std::vector<double> bound =
       mended ? bounds_by_source(*mended, surface) : left_of_bound(std::move(moved), run.options);
-  return {KnownSurface(std::move(surface), std::move(found.edges), std::move(features)), defects, std::move(bound),
-          unfolded, std::move(closed)};
+  return {KnownSurface(std::move(surface), std::move(found.edges), std::move(features)),
+          defects,
+          std::move(bound),
+          unfolded,
+          std::move(volumes),
+          std::move(closed)};
 }
 
 Prepared on_geometry(const Domain& domain, Prepared prepared) {
@@ -332,8 +332,9 @@ Prepared on_geometry(const Domain& domain, Prepared prepared) {
 
 /// prepare(), but for periods.
 Prepared prepare_aperiodic(const Domain& domain, Run& run) {
-  const bool are_bounds_asked = has_automatic_sizes(run.options) || domain.geometry;
-  if (domain.bound.empty() || run.options.surface.max_deviation || !are_bounds_asked)
+  const SurfaceOptions& asked = run.options.surface;
+  const bool heeds_bounds = asked.volume_tolerance || (has_automatic_sizes(run.options) && !asked.max_deviation);
+  if (domain.bound.empty() || !heeds_bounds)
     return on_geometry(domain, prepare(domain.surface, nullptr, is_known_clean(domain), run));
   SurfaceMesh numbered = domain.surface;
   numbered.source.clear();
@@ -374,7 +375,9 @@ SizeField choose_sizes(const Prepared& input, Run& run) {
     return keeps_surface(run.options)
                ? size_field_of_surface(input.surface, size, stage)
                : make_size_field(input.surface, size, stage,
-                                 {input.bound, input.closed.is_in_it, input.geometry != nullptr}, budget);
+                                 {input.bound, input.closed.is_in_it, run.options.surface.volume_tolerance.has_value(),
+                                  input.geometry ? kTurnsOfGeometry : 0},
+                                 budget);
   });
   const MethodTraits& method = traits_of(run.options.method);
   const SurfaceMesh& surface = input.surface.mesh();
@@ -393,10 +396,15 @@ Remeshed triangulate(const Prepared& input, const SizeField& sizes, Run& run) {
       const SurfaceOptions surface = true_to_input(input.surface.mesh(), run.options);
       const double slack = surface.max_deviation == run.options.surface.max_deviation ? 1 : kAutomaticSlack;
       const double budget = budget_of(input.surface.mesh(), run.options);
+      const SizeOptions& size = run.options.size;
+      const FrontLimits limits{slack, budget, size.min_size.value_or(0),
+                               size.size && input.geometry ? kLeastOfGiven : 0};
       Remeshed remeshed = remeshed_in_shape(
           input, sizes, run, stage,
           [&](const SizeField& by) {
-            return remesh_surface(input.surface, by, surface, stage, input.kept_bound(), {slack, budget}, input.cell);
+            Remeshed made = remesh_surface(input.surface, by, surface, stage, input.kept_bound(), limits, input.cell);
+            keep_surface_volumes(input, made, run, stage);
+            return made;
           },
           budget);
       stage.count("triangles", static_cast<double>(remeshed.surface.triangles.size()));
@@ -412,7 +420,9 @@ Remeshed triangulate(const Prepared& input, const SizeField& sizes, Run& run) {
 
 Filled fill(const Prepared& input, const SizeField& sizes, Run& run) {
   if (traits_of(run.options.method).makes_own_boundary()) return stuff(input, sizes, run);
-  return fill_surface(input, triangulate(input, sizes, run), run);
+  Remeshed surface = triangulate(input, sizes, run);
+  require_expected_elements(run.report.expected_tets);
+  return fill_surface(input, std::move(surface), run);
 }
 
 Comm comm_of(const Filled& filled, const Run& run) {

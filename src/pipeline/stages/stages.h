@@ -38,6 +38,8 @@ struct Prepared {
   /// unfolding has used up of a bound of the user's, and where repair moved something. Empty: so nowhere.
   std::vector<double> bound = {};
   bool unfolded = false;  ///< folds were taken off
+  /// Of the regions, by number, before folds were taken off. Only of a clean surface.
+  std::vector<double> volumes = {};
   ClosedPatch closed = {};
   const TrueGeometry* geometry = nullptr;  ///< null: not known
   PeriodicCell cell = {};                  ///< whose opposite faces are the same

@@ -5,7 +5,6 @@
 #include "base/mesh/complex.h"
 #include "improve/curved/curved.h"
 #include "improve/schedule/schedule.h"
-#include "pipeline/stages/kept_shape.h"
 #include "pipeline/stages/methods.h"
 
 #include <algorithm>
@@ -19,9 +18,6 @@ namespace {
 
 /// Degrees: within a face only such edges are features.
 constexpr double kAngleWithinFace = 80;
-/// What chords cut off falls with the bound: it is made smaller to come to this part of what may be lost, but to no
-/// less than this part of itself at once.
-constexpr double kAimOfBound = 0.65, kLeastOfBound = 0.05;
 
 /// From one numbering of patches to another, by their names; those that have no name there come behind it.
 std::vector<std::uint32_t> renumbering(const std::vector<std::string>& from, std::vector<std::string>& to) {
@@ -192,37 +188,6 @@ void describe_true_volumes(const Filled& filled, const Domain& domain, Report& r
     report.regions[r].layers_volume = of_layers[r];
     report.regions[r].true_volume = domain.true_volumes[r];
   }
-}
-
-std::vector<OffSolid> off_solids(const Domain& domain, const Report& report) {
-  std::vector<OffSolid> off;
-  for (std::uint32_t r = 0; r < domain.true_volumes.size(); ++r) {
-    const double made =
-        report.regions.empty() ? report.volume : report.regions[r].volume + report.regions[r].layers_volume;
-    const double change = change_of_volume(made, domain.true_volumes[r]);
-    if (!(std::abs(change) <= kVolumeKept)) off.push_back({r, change});
-  }
-  return off;
-}
-
-std::vector<double> tightened(const Domain& domain, const std::vector<OffSolid>& off) {
-  std::vector<double> bound = domain.bound;
-  bound.resize(domain.surface.triangles.size(), HUGE_VAL);
-  for (std::size_t t = 0; t < bound.size(); ++t)
-    for (const OffSolid& solid : off) {
-      const Sides sides = domain.surface.sides_of(t);
-      if (sides[0] != solid.region && sides[1] != solid.region) continue;
-      bound[t] *= std::clamp(kAimOfBound * kVolumeKept / std::abs(solid.change), kLeastOfBound, 1.0);
-    }
-  return bound;
-}
-
-std::string in_words(const Domain& domain, const std::vector<OffSolid>& off) {
-  std::string all;
-  for (const OffSolid& solid : off)
-    all += fmt::format("{}\"{}\" by {:+.2f} %", all.empty() ? "" : ", ", region_name(domain.surface, solid.region),
-                       100 * solid.change);
-  return all;
 }
 
 }  // namespace octafront

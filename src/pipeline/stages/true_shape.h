@@ -24,18 +24,4 @@ void name_parts(const Prepared& input, Filled& filled, Run& run);
 /// Enters the true volumes into the report, beside those of the mesh, curved as it is.
 void describe_true_volumes(const Filled& filled, const Domain& domain, Report& report);
 
-/// A solid whose volume is off.
-struct OffSolid {
-  std::uint32_t region = 0;
-  double change = 0;  ///< part of the true volume
-};
-/// Those that are off by more than kVolumeKept, by the report.
-std::vector<OffSolid> off_solids(const Domain& domain, const Report& report);
-
-/// Bounds that let the solids keep their volume: where they are off they are made smaller.
-std::vector<double> tightened(const Domain& domain, const std::vector<OffSolid>& off);
-
-/// "solid \"a\" by +1.2 %, ..."
-std::string in_words(const Domain& domain, const std::vector<OffSolid>& off);
-
 }  // namespace octafront

@@ -20,12 +20,38 @@ Json json_of(const StageReport& stage) {
           {"notes", stage.notes}};
 }
 
+Json json_of(Vec3 p) {
+  return {p.x, p.y, p.z};
+}
+
+/// All notes, with the codes and values of those that have some.
+Json notes_of(const std::vector<StageReport>& stages) {
+  Json all = Json::array();
+  for (const StageReport& stage : stages)
+    for (const std::string& note : stage.notes) {
+      Json told{{"code", "note"}, {"stage", stage.name}, {"text", note}};
+      for (const Finding& finding : stage.findings) {
+        if (finding.text != note) continue;
+        told["code"] = finding.code;
+        if (!finding.region.empty()) told["region"] = finding.region;
+        for (const auto& [key, value] : finding.values) told[key] = value;
+        if (finding.at) told["at"] = json_of(*finding.at);
+      }
+      all.push_back(std::move(told));
+    }
+  return all;
+}
+
 Json json_of(const QualitySummary& q) {
   return {{"beta_mean", q.beta_mean},
           {"beta_min", q.beta_min},
+          {"beta_min_tet", q.beta_min_tet},
+          {"beta_min_at", json_of(q.beta_min_at)},
           {"beta_classes", q.beta_classes},
           {"beta_class_bounds", {0, 0.2, 0.4, 0.6, 0.8, 1}},
           {"dihedral_min_degrees", q.dihedral_min},
+          {"dihedral_min_tet", q.dihedral_min_tet},
+          {"dihedral_min_at", json_of(q.dihedral_min_at)},
           {"dihedral_max_degrees", q.dihedral_max},
           {"dihedral_histogram", q.dihedral_histogram},
           {"dihedral_class_degrees", 10}};
@@ -39,6 +65,7 @@ Json json_of(const std::vector<RegionSummary>& regions) {
                    {"tets", regions[r].quality.elements},
                    {"volume", regions[r].volume},
                    {"quality", json_of(regions[r].quality)}});
+    if (regions[r].input_volume > 0) all.back()["input_volume"] = regions[r].input_volume;
     if (regions[r].layers_volume > 0) all.back()["layers_volume"] = regions[r].layers_volume;
     if (regions[r].true_volume > 0) all.back()["true_volume"] = regions[r].true_volume;
   }
@@ -103,6 +130,7 @@ std::string to_json(const Report& report) {
     j["hash"] = fmt::format("{:016x}", report.hash);
   }
   if (report.surface_edges.edges > 0) j["surface_edges"] = json_of(report.surface_edges);
+  j["notes"] = notes_of(report.stages);
   j["stages"] = stages;
   j["wall_seconds"] = report.wall_seconds;
   j["cpu_seconds"] = report.cpu_seconds;

@@ -70,6 +70,11 @@ std::string note_lines(const Report& report) {
   return out;
 }
 
+/// No angle above 0 is told as 0.
+std::string small_degrees(double angle) {
+  return angle < 1 ? fmt::format("{:.2g}", angle) : fmt::format("{:.1f}", angle);
+}
+
 std::string quality_lines(const QualitySummary& q) {
   constexpr const char* kClasses[5] = {"0.0 - 0.2", "0.2 - 0.4", "0.4 - 0.6", "0.6 - 0.8", "0.8 - 1.0"};
   std::string out = "quality, beta = 3 r / R\n";
@@ -78,9 +83,11 @@ std::string quality_lines(const QualitySummary& q) {
         static_cast<double>(q.beta_classes[c]) / static_cast<double>(std::max<std::uint64_t>(1, q.elements));
     out += fmt::format("  {}{:>16}{:>9.3f} %  {}\n", kClasses[c], grouped(q.beta_classes[c]), 100 * share, bar(share));
   }
-  out += fmt::format("  mean {:.4f}, least {:.4f} (tet {})\n", q.beta_mean, q.beta_min, q.beta_min_tet);
-  out += fmt::format("  dihedral angles from {:.1f} to {:.1f} degrees\n", q.dihedral_min, q.dihedral_max);
-  return out;
+  out += fmt::format("  mean {:.4f}, least {:.4f} (tet {} at {})\n", q.beta_mean, q.beta_min, q.beta_min_tet,
+                     at_point(q.beta_min_at));
+  out += fmt::format("  dihedral angles from {} to {:.1f} degrees\n", small_degrees(q.dihedral_min), q.dihedral_max);
+  return out +
+         fmt::format("  the least angle is one of tet {} at {}\n", q.dihedral_min_tet, at_point(q.dihedral_min_at));
 }
 
 std::string layered_wall(const LayerSummary& w) {

@@ -96,6 +96,23 @@ TEST(Cell, CutsAlongAxesThatAreNotRepeated) {
   EXPECT_NEAR(domain.volumes[1], 0.5 * enclosed_volume(ball("", {}, 0.3).surface), 1e-4);
 }
 
+TEST(Cell, AFibreThatIsLongerGoesOnByItself) {
+  Body fibre{"fibre", testing::transformed(testing::box(0.3, 0.4, 1.6), 1, {0.35, -0.2, -0.3})};
+  std::vector<std::string> notes;
+  IntakeOptions options = unit_cell("xyz");
+  options.tell = [&](const IntakeNote& note) { notes.push_back(note.text); };
+  const Domain domain = open_domain({fibre}, options);
+  EXPECT_NEAR(domain.volumes[1], 0.12, 1e-9);
+  EXPECT_THAT(notes, ::testing::Contains(HasSubstr("not repeated along z")));
+  const Result r = generate(domain, with_periods(0.15, "xyz"));
+  EXPECT_EQ(first_defect(r.mesh), std::nullopt);
+  expect_all_paired(r.mesh);
+  // A slanted one is continued by its copies, beside which it lies.
+  for (Vec3& p : fibre.surface.points) p.x += 0.5 * p.z;
+  const Domain slanted = open_domain({fibre}, options);
+  EXPECT_NEAR(slanted.volumes[1], 1.6 * 0.12, 1e-9);
+}
+
 TEST(Cell, MayBeTheFirstBody) {
   IntakeOptions options = unit_cell("xyz");
   options.box = "first";

@@ -317,5 +317,31 @@ TEST_F(Intake, FilesOfWhatLiesInsideAreRefusedWithThePlace) {
   EXPECT_THROW(open_domain(cube(2), twice), OptionError);
 }
 
+TEST_F(Intake, NumbersAndRequiredSetsOfAMeshFileComeOutAgain) {
+  TetMesh mesh;
+  mesh.points = {{0, 0, 0}, {3, 0, 0}, {0, 3, 0}, {0, 0, 3}, {3, 3, 3}};
+  mesh.tets = {{0, 1, 2, 3}, {1, 2, 3, 4}};
+  mesh.region = {0, 1}, mesh.region_labels = {0, 5};
+  mesh.boundary = {{0, 2, 1}, {0, 1, 3}, {0, 3, 2}, {1, 2, 4}, {2, 3, 4}, {3, 1, 4}};
+  mesh.patch = {0, 0, 0, 1, 1, 1}, mesh.patch_labels = {-3, 2000001};
+  mesh.sets = {{"RequiredVertices", NamedSet::Kind::kNodes, {4}}, {"RequiredTriangles", NamedSet::Kind::kFaces, {0}}};
+  write_mesh("in.mesh", mesh);
+  const Domain domain = open_domain("in.mesh");
+  EXPECT_TRUE(says(domain, "reading", "1 faces between regions"));
+  EXPECT_NE(to_json(domain).find("\"input_notes\""), std::string::npos);
+  Options options;
+  options.surface.keep = true;
+  write_mesh("out.mesh", generate(domain, options).mesh);
+  const TetMesh out = read_mesh("out.mesh");
+  EXPECT_EQ(out.region_labels, (std::vector<std::int64_t>{0, 5}));
+  std::vector<std::int64_t> labels;
+  for (const std::uint32_t p : out.patch) labels.push_back(out.patch_labels[p]);
+  EXPECT_EQ(std::count(labels.begin(), labels.end(), -3), 3);
+  EXPECT_EQ(std::count(labels.begin(), labels.end(), 2000001), 3);
+  std::string sets;
+  for (const NamedSet& set : out.sets) sets += set.name + " " + std::to_string(set.members.size()) + " ";
+  EXPECT_EQ(sets, "RequiredTriangles 1 RequiredVertices 1 ");
+}
+
 }  // namespace
 }  // namespace octafront

@@ -14,6 +14,7 @@
 #include <utility>
 #include <vector>
 
+#include <fmt/format.h>
 #include <gtest/gtest.h>
 
 namespace octafront {
@@ -88,6 +89,82 @@ TEST(Inside, WhatLiesOutsideIsCutOffAndSaid) {
     for (const std::string& note : stage.notes) notes += note + "\n";
   EXPECT_NE(notes.find("2 of 3 are nodes"), std::string::npos) << notes;
   EXPECT_NE(notes.find("length 1 in"), std::string::npos) << notes;
+}
+
+std::string notes_of(const Result& result) {
+  std::string notes;
+  for (const StageReport& stage : result.report.stages)
+    for (const std::string& note : stage.notes) notes += note + "\n";
+  return notes;
+}
+
+/// Turned and moved: nothing is parallel to an axis.
+template <class Points>
+Points moved_about(Points points) {
+  const double c = std::cos(0.5), s = std::sin(0.5);
+  for (Vec3& p : points)
+    p = Vec3{c * p.x - s * p.y, 0.6 * (s * p.x + c * p.y) - 0.8 * p.z, 0.8 * (s * p.x + c * p.y) + 0.6 * p.z} +
+        Vec3{3, 1, 2};
+  return points;
+}
+
+TEST(Inside, LinesOnEdgesAndFacesAreWhole) {
+  for (const bool is_turned : {false, true}) {
+    SCOPED_TRACE(is_turned);
+    SurfaceMesh body = testing::cube(1);
+    if (is_turned) body.points = moved_about(body.points);
+    Domain domain(body);
+    for (std::vector<Vec3> line : std::vector<std::vector<Vec3>>{
+             {{0, 0, 0}, {1, 0, 0}}, {{0, 1, 0}, {0, 1, 0.8}}, {{0, 0.5, 0}, {1, 0.5, 0}}, {{1, 1, 1}, {0, 0.5, 0.5}}})
+      domain.wires.push_back(polygon(fmt::format("w{}", domain.wires.size()), is_turned ? moved_about(line) : line));
+    const Result result = generate(domain, at_size(0.2));
+    EXPECT_EQ(first_defect(result.mesh), std::nullopt);
+    EXPECT_NEAR(result.report.volume, 1, 1e-9);
+    EXPECT_GT(result.report.quality.dihedral_min, 15);
+    EXPECT_NEAR(length_of_curve(result.mesh, "w0"), 1, 1e-6);
+    EXPECT_NEAR(length_of_curve(result.mesh, "w1"), 0.8, 1e-6);
+    EXPECT_NEAR(length_of_curve(result.mesh, "w2"), 1, 1e-6);
+    EXPECT_NEAR(length_of_curve(result.mesh, "w3"), std::sqrt(1.5), 1e-6);
+    EXPECT_EQ(notes_of(result).find("outside"), std::string::npos) << notes_of(result);
+  }
+}
+
+TEST(Inside, PointsOnCornersEdgesAndFacesAreNodes) {
+  for (const bool is_turned : {false, true}) {
+    SurfaceMesh body = testing::cube(1);
+    std::vector<Vec3> points{{0, 0, 0}, {0.5, 0, 0}, {0.5, 0.5, 0}, {0.5, 0.5, 0.5}, {2, 2, 2}};
+    if (is_turned) body.points = moved_about(body.points), points = moved_about(points);
+    Domain domain(body);
+    domain.points = {{"g", points}};
+    const Result result = generate(domain, at_size(0.2));
+    EXPECT_NEAR(result.report.volume, 1, 1e-9);
+    ASSERT_EQ(result.mesh.sets.size(), 1U);
+    EXPECT_EQ(result.mesh.sets[0].members.size(), 4U);
+    EXPECT_NE(notes_of(result).find("4 of 5 are nodes, 1 lies outside"), std::string::npos) << notes_of(result);
+  }
+}
+
+TEST(Inside, LinesBesideWallsAreWholeAndForceNoFlatElements) {
+  for (const double beside : {0.05, 0.01, 0.003})
+    for (const bool is_on_face : {true, false}) {
+      SCOPED_TRACE(::testing::Message() << beside << " " << is_on_face);
+      Domain domain(testing::cube(1));
+      const double z = is_on_face ? 0 : beside;
+      domain.wires = {polygon("w", {{0.2, beside, z}, {0.8, beside, z}})};
+      const Result result = generate(domain, at_size(0.2));
+      EXPECT_EQ(first_defect(result.mesh), std::nullopt);
+      EXPECT_NEAR(result.report.volume, 1, 1e-9);
+      EXPECT_NEAR(length_of_curve(result.mesh, "w"), 0.6, 1e-9);
+      EXPECT_GT(result.report.quality.dihedral_min, 10);
+    }
+}
+
+TEST(Inside, WhatIsCutOffIsSaidWithItsLength) {
+  Domain domain(testing::cube(1));
+  domain.wires = {polygon("w", {{0.5, 0.5, -1}, {0.5, 0.5, 0.5}})};
+  const Result result = generate(domain, at_size(0.2));
+  EXPECT_NEAR(length_of_curve(result.mesh, "w"), 0.5, 1e-9);
+  EXPECT_NE(notes_of(result).find("; 1 of it lies outside and is cut off"), std::string::npos) << notes_of(result);
 }
 
 TEST(Inside, TheSameMeshForAnyNumberOfThreads) {

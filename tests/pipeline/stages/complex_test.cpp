@@ -1,5 +1,6 @@
 // Several regions in one mesh, end to end.
 
+#include <octafront/complex.h>
 #include <octafront/error.h>
 #include <octafront/generate.h>
 #include <octafront/validity.h>
@@ -7,9 +8,11 @@
 #include "support/complexes.h"
 #include "support/labelled_walls.h"
 #include "support/named_surfaces.h"
+#include "support/nasty_surfaces.h"
 
 #include <algorithm>
 #include <array>
+#include <cmath>
 #include <set>
 #include <string>
 #include <utility>
@@ -254,6 +257,47 @@ TEST(Complex, WhatIsNotCleanIsRefusedWithPlaces) {
 TEST(Complex, PartsThatTouchOthersWithAllTheirCornersAreClean) {
   const SurfaceMesh walls = rough_walls(6, nearest_of(5, 4003), 4003);
   expect_complex(generate(walls, keeping(0.25)), walls);
+}
+
+double volume_of(const TetMesh& mesh) {
+  double six = 0;
+  for (const auto& [a, b, c, d] : mesh.tets) {
+    const Vec3 p = mesh.points[a];
+    six += dot(mesh.points[b] - p, cross(mesh.points[c] - p, mesh.points[d] - p));
+  }
+  return six / 6;
+}
+
+/// Turned about no axis of the grid, and scaled.
+SurfaceMesh turned_and_scaled(SurfaceMesh surface, double scale) {
+  const double c = std::cos(0.4), s = std::sin(0.4);
+  for (Vec3& p : surface.points) {
+    p = {c * p.x - s * p.y, s * p.x + c * p.y, p.z};
+    p = scale * Vec3{p.x, c * p.y - s * p.z, s * p.y + c * p.z};
+  }
+  return surface;
+}
+
+TEST(Complex, WhatTouchesItselfKeepsItsVolumeAndHasNoNamesOfItsOwn) {
+  for (const std::uint64_t seed : {1, 2, 3}) {
+    SCOPED_TRACE(seed);
+    const double scale = seed == 3 ? 1e4 : 1;
+    const SurfaceMesh walls = turned_and_scaled(
+        testing::random_voxels(4, 0.3 * static_cast<double>(seed), 0, testing::Pinches::kKept, seed), scale);
+    const auto complex = complex_of_walls(walls);
+    ASSERT_TRUE(complex);
+    for (const bool kept : {true, false}) {
+      Options options;
+      options.surface.keep = kept;
+      if (!kept) options.size.size = scale;
+      const Result r = generate(complex->surface, options);
+      EXPECT_EQ(first_defect(r.mesh), std::nullopt);
+      EXPECT_NEAR(volume_of(r.mesh) / enclosed_volume(walls), 1, 1e-9);
+      EXPECT_EQ(r.report.regions.size(), 1U);
+      for (const std::string& name : r.mesh.patch_names)
+        EXPECT_NE(name, "body") << "of a plain body patches have no names";
+    }
+  }
 }
 
 TEST(Complex, OtherMethodsSayThatTheyFillOneRegion) {

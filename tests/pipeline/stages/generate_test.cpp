@@ -233,7 +233,7 @@ TEST(Generate, TheOctreeMethodSaysWhatItLoses) {
     ASSERT_LT(r.report.volume / 0.12, 0.97);
     bool said = false;
     for (const StageReport& stage : r.report.stages)
-      for (const std::string& note : stage.notes) said = said || note.find("of the volume") != std::string::npos;
+      for (const std::string& note : stage.notes) said = said || note.find("of its volume") != std::string::npos;
     EXPECT_TRUE(said);
   } catch (const MeshingError& e) {
     EXPECT_NE(std::string(e.what()).find("smaller element size"), std::string::npos);

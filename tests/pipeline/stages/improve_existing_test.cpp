@@ -7,8 +7,10 @@
 #include "support/mixed_mesh.h"
 #include "support/named_surfaces.h"
 
+#include <algorithm>
 #include <array>
 #include <cmath>
+#include <tuple>
 #include <vector>
 
 #include <gtest/gtest.h>
@@ -115,6 +117,29 @@ TEST(ImproveExisting, LeavesWedgesAndPyramidsAsTheyAre) {
   EXPECT_EQ(better.mesh.interfaces.size(), start.interfaces.size());
   const Improved again = improve_existing(start);
   EXPECT_EQ(again.mesh, better.mesh);
+}
+
+TEST(ImproveExisting, WhatIsRequiredInsideStays) {
+  TetMesh start = unimproved(testing::torus(40, 20), 0.2);
+  std::vector<char> is_wall(start.points.size(), 0);
+  for (const Triangle& t : start.boundary)
+    for (const VertexIndex v : t) is_wall[v] = 1;
+  NamedSet set{"RequiredVertices", NamedSet::Kind::kNodes, {}};
+  for (VertexIndex v = 0; v < is_wall.size(); ++v)
+    if (!is_wall[v] && set.members.size() < 3) set.members.push_back(v);
+  ASSERT_EQ(set.members.size(), 3U);
+  std::vector<Vec3> wanted;
+  for (const VertexIndex v : set.members) wanted.push_back(start.points[v]);
+  start.sets = {set};
+  const Improved better = improve_existing(start);
+  EXPECT_EQ(first_defect(better.mesh), std::nullopt);
+  EXPECT_GT(better.report.quality.beta_mean, better.before.beta_mean);
+  ASSERT_EQ(better.mesh.sets.size(), 1U);
+  std::vector<Vec3> kept;
+  for (const VertexIndex v : better.mesh.sets[0].members) kept.push_back(better.mesh.points[v]);
+  const auto by_place = [](const Vec3& a, const Vec3& b) { return std::tie(a.x, a.y, a.z) < std::tie(b.x, b.y, b.z); };
+  std::sort(kept.begin(), kept.end(), by_place), std::sort(wanted.begin(), wanted.end(), by_place);
+  EXPECT_EQ(kept, wanted);
 }
 
 }  // namespace

@@ -73,6 +73,37 @@ TEST(ReportAsJson, KeepsEveryNumberAndTheOrderOfStages) {
   EXPECT_EQ(j["stages"][1]["notes"][0], r.stages[1].notes[0]);
 }
 
+TEST(ReportAsJson, NotesHaveCodesAndValues) {
+  Report r = large_report();
+  Finding lost{"volume-lost", "region \"ball\" has 91 %", "ball", {{"change_percent", -9}}, Vec3{1, 2, 3}};
+  r.stages[1].note(lost);
+  const Json notes = Json::parse(to_json(r))["notes"];
+  ASSERT_EQ(notes.size(), 2u);
+  EXPECT_EQ(notes[0]["code"], "note");
+  EXPECT_EQ(notes[0]["text"], r.stages[1].notes[0]);
+  EXPECT_EQ(notes[0]["stage"], "volume front");
+  EXPECT_EQ(notes[1]["code"], "volume-lost");
+  EXPECT_EQ(notes[1]["region"], "ball");
+  EXPECT_EQ(notes[1]["change_percent"], -9);
+  EXPECT_EQ(notes[1]["at"], (Json{1, 2, 3}));
+  EXPECT_TRUE(has(to_table(r), "note (volume front): region \"ball\" has 91 %\n"));
+}
+
+TEST(ReportAsJson, TheLeastElementHasItsPlace) {
+  Report r = large_report();
+  r.quality.beta_min_tet = 5, r.quality.dihedral_min_tet = 7;
+  r.quality.beta_min_at = {1, 2, 3}, r.quality.dihedral_min_at = {4, 5, 6};
+  r.quality.dihedral_min = 0.0012;
+  const Json q = Json::parse(to_json(r))["quality"];
+  EXPECT_EQ(q["beta_min_tet"], 5);
+  EXPECT_EQ(q["beta_min_at"], (Json{1, 2, 3}));
+  EXPECT_EQ(q["dihedral_min_tet"], 7);
+  EXPECT_EQ(q["dihedral_min_at"], (Json{4, 5, 6}));
+  const std::string table = to_table(r);
+  EXPECT_TRUE(has(table, "dihedral angles from 0.0012 to")) << "not 0.0";
+  EXPECT_TRUE(has(table, "tet 7 at (4, 5, 6)"));
+}
+
 TEST(ReportAsJson, WritesTheHashWithAllItsDigits) {
   EXPECT_EQ(Json::parse(to_json(large_report()))["hash"], "000000000000001f");
 }
