@@ -127,9 +127,9 @@ RegionSeed region_seed(const std::string& typed) {
   return {typed.substr(0, equals), point_of("--region", typed, typed.substr(equals + 1))};
 }
 
-std::int64_t whole_number(double n) {
+std::int64_t whole_number(const char* option, double n) {
   if (!(std::abs(n) < 9e18) || n != std::floor(n))
-    throw CLI::ValidationError("--elements", "needs a whole number, such as 100000 or 1e5");
+    throw CLI::ValidationError(option, "needs a whole number, such as 100000 or 1e5");
   return static_cast<std::int64_t>(n);
 }
 
@@ -196,8 +196,9 @@ void declare_complex(CLI::App& command, Arguments& a) {
       "new: it is a region of its own, a&b; regions: as later");
   group
       ->add_option("--tolerance", o.tolerance,
-                   "Several files: what is nearer than this comes together; 0: exactly as they are [a millionth of "
-                   "the diagonal]. Repair: nothing moves farther than this [a thousandth of it]")
+                   "Several bodies: walls nearer to each other than this are one; 0: exactly as they are [what "
+                   "facets explain, a tenth of the size]. Repair: nothing moves farther than this [a thousandth of "
+                   "the diagonal]")
       ->type_name("T");
 }
 
@@ -376,6 +377,22 @@ void declare_report(CLI::App& command, Arguments& a) {
       ->type_name("FILE");
 }
 
+/// "500MB", "2 GB", "1e9".
+std::uint64_t bytes_of(const std::string& typed) {
+  constexpr double kLeast = 64e6;  // the program itself takes some of it
+  const std::size_t end = typed.find_last_of("0123456789.") + 1;
+  const std::string unit = CLI::detail::to_lower(CLI::detail::trim_copy(typed.substr(end)));
+  const std::vector<std::pair<std::string, double>> units{
+      {"", 1},    {"b", 1},   {"kb", 1e3}, {"mb", 1e6},     {"gb", 1e9},     {"tb", 1e12},    {"k", 1e3},
+      {"m", 1e6}, {"g", 1e9}, {"t", 1e12}, {"kib", 0x1p10}, {"mib", 0x1p20}, {"gib", 0x1p30}, {"tib", 0x1p40}};
+  const auto known = std::find_if(units.begin(), units.end(), [&](const auto& u) { return u.first == unit; });
+  double number = 0;
+  if (known == units.end() || !CLI::detail::lexical_cast(CLI::detail::trim_copy(typed.substr(0, end)), number) ||
+      !(number * known->second >= kLeast && number * known->second < 1e18))
+    throw CLI::ValidationError("--memory", "\"" + typed + "\" is no size of memory; write 500MB or 8GB, at least 64MB");
+  return static_cast<std::uint64_t>(number * known->second);
+}
+
 void declare_run(CLI::App& command, Arguments& a) {
   auto* group = command.add_option_group("Run");
   group
@@ -383,6 +400,29 @@ void declare_run(CLI::App& command, Arguments& a) {
                    "Threads at most, never more than the machine has; 0: all. The result is the same")
       ->check(CLI::Range(0, 1024).description(""))
       ->type_name("N");
+  group
+      ->add_option_function<std::string>(
+          "--memory", [&a](const std::string& typed) { a.limits.memory = bytes_of(typed); },
+          "Memory at most: 500MB, 8GB, or bytes; what takes more is refused [what the machine has]")
+      ->type_name("SIZE");
+  group
+      ->add_option_function<double>(
+          "--max-elements",
+          [&a](double n) {
+            if (!(n >= 1)) throw CLI::ValidationError("--max-elements", "is a number of elements, 1 or more");
+            a.limits.elements = static_cast<std::uint64_t>(whole_number("--max-elements", n));
+          },
+          "Elements at most; what has or makes more is refused")
+      ->type_name("N");
+  group
+      ->add_option_function<double>(
+          "--cpu-seconds",
+          [&a](double seconds) {
+            if (!(seconds > 0)) throw CLI::ValidationError("--cpu-seconds", "is a number of seconds above 0");
+            a.limits.cpu_seconds = seconds;
+          },
+          "CPU seconds of all threads at most; then the run ends without a result")
+      ->type_name("S");
   group->add_flag("-q,--quiet", a.quiet, "Print nothing but errors");
 }
 
@@ -439,7 +479,7 @@ void declare_sizes(CLI::App& command, Arguments& a) {
   add_length(*group, a, "--size", o.size, "Edge length, in units of the input, or with one: 2mm")->type_name("H");
   group
       ->add_option_function<double>(
-          "--elements", [&o](double n) { o.elements = whole_number(n); },
+          "--elements", [&o](double n) { o.elements = whole_number("--elements", n); },
           "Number of tetrahedra wanted, met within 15 %")
       ->type_name("N");
   group->add_option("--curvature", o.curvature, "Elements per full turn of a curved surface")->type_name("K");
@@ -533,7 +573,11 @@ void declare_surface(CLI::App& command, Arguments& a) {
   group->add_flag("--patches", o.patches_by_features,
                   "Each part of the surface that feature edges enclose becomes a patch");
   group->add_flag("--keep-volumes", o.keep_volumes,
-                  "Regions of a complex keep the volumes that they have in the input; images do so unasked");
+                  "Bodies and regions keep the volumes that they have in the input; images do so unasked");
+  group
+      ->add_option("--volume-tolerance", o.volume_tolerance,
+                   "Smaller elements where chords would change the volume of a region by more percent [none]")
+      ->type_name("P");
   a.names.add("keep", "--keep-surface");
   a.names.add("patches_by_features", "--patches");
 }
@@ -632,6 +676,11 @@ void declare_volume(CLI::App& command, Arguments& a) {
       ->capture_default_str();
 }
 
+void add_no_bridging(CLI::App& group, Arguments& a) {
+  group.add_flag("--no-bridging", a.options.improve.no_bridging,
+                 "Elements with all corners on walls (boundary, walls between regions) get a vertex inside");
+}
+
 void declare_improvement(CLI::App& command, Arguments& a) {
   using Level = ImproveOptions::Level;
   ImproveOptions& o = a.options.improve;
@@ -661,9 +710,23 @@ void declare_improvement(CLI::App& command, Arguments& a) {
   group->add_flag_function(
       "--fix-boundary", [&o](std::int64_t) { o.move_boundary = false; },
       "No vertex of the boundary slides on the surface, no edge turns");
+  add_no_bridging(*group, a);
   a.names.add("level", "--improve");
   a.names.add("seconds", "--improve-time");
   a.names.add("move_boundary", "--fix-boundary");
+}
+
+void declare_requirements(CLI::App& command, Arguments& a, bool of_sizes) {
+  RequireOptions& o = a.options.require;
+  auto* group = command.add_option_group("Requirements", "A mesh that does not meet them is not written: status 4");
+  group
+      ->add_option("--require-volume", o.volume,
+                   "Percent by which the volume of each region may differ from the input's")
+      ->type_name("P");
+  group->add_option("--require-angle", o.angle, "Degrees that each dihedral angle has at least")->type_name("DEG");
+  if (of_sizes)
+    group->add_option("--require-size", o.size, "Times the size wanted there that no edge is longer than; 1 or more")
+        ->type_name("F");
 }
 
 void declare_ground(CLI::App& command, Arguments& a) {
@@ -715,6 +778,15 @@ void declare_adaptation(CLI::App& command, Arguments& a) {
       ->type_name("PLACE");
   group->add_option("--halo", a.options.adapt.halo, "Layers of elements around --only that may change, too [2]")
       ->type_name("N");
+  group->add_flag_function(
+      "--fix-boundary", [&a](std::int64_t) { a.options.improve.move_boundary = false; },
+      "The triangles of the outer boundary stay as they are; lengths grow from there");
+  group
+      ->add_option("--keep", a.keep,
+                   "Faces, edges and vertices that stay as they are: a patch, curve or set by its name, a region for "
+                   "the walls around it, or the number of a patch; several times if wanted")
+      ->type_name("NAME");
+  add_no_bridging(*group, a);
   group
       ->add_option("--map", a.map_file,
                    "Where old vertices and elements are now: .json (two arrays) or .csv, by numbers from 0; -1: gone")

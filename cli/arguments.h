@@ -2,6 +2,7 @@
 
 #include <octafront/domain.h>
 #include <octafront/io.h>
+#include <octafront/limits.h>
 #include <octafront/named_groups.h>
 #include <octafront/options.h>
 #include <octafront/solver_checks.h>
@@ -44,6 +45,7 @@ struct Arguments {
   Partitioner partitioner = Partitioner::kCurve;
   bool split_files = false;        ///< of the meshes: a file for each part
   std::vector<std::string> only;   ///< places that may change
+  std::vector<std::string> keep;   ///< what stays beside them
   std::vector<std::string> carry;  ///< fields of the input that go along; empty: all, "none": none
   std::filesystem::path map_file;  ///< where old vertices and elements are now; empty: none
   std::filesystem::path regions, point_sizes, size_field;  ///< files with sizes; empty: none
@@ -60,9 +62,11 @@ struct Arguments {
   std::vector<GroupRule> groups;  ///< that are added to it
   int new_order = 0;              ///< of a converted mesh; 0: as it is
   int threads = 0;
+  ProcessLimits limits;
   std::filesystem::path checkpoint, resume;  ///< folders; empty: none
   bool quiet = false;
   OptionNames names;
+  std::vector<std::string> words_with_line_ends;           ///< of the command line
   std::vector<std::pair<std::string, std::string>> given;  ///< options and values as typed; flags are "true"
 };
 
@@ -98,6 +102,8 @@ void declare_periodic(CLI::App& command, Arguments& arguments);
 void declare_layers(CLI::App& command, Arguments& arguments);
 void declare_volume(CLI::App& command, Arguments& arguments);
 void declare_improvement(CLI::App& command, Arguments& arguments);
+/// --require-volume and --require-angle; `of_sizes`: --require-size, too.
+void declare_requirements(CLI::App& command, Arguments& arguments, bool of_sizes);
 void declare_ground(CLI::App& command, Arguments& arguments);
 /// How a mesh is adapted.
 void declare_adaptation(CLI::App& command, Arguments& arguments);
@@ -145,6 +151,6 @@ GroupRule group_rule(const std::string& typed);
 RegionSeed region_seed(const std::string& typed);
 
 /// "1e5" is a number of elements too. Throws CLI::ValidationError.
-std::int64_t whole_number(double n);
+std::int64_t whole_number(const char* option, double n);
 
 }  // namespace octafront::cli

@@ -16,6 +16,7 @@
 #include "targets.h"
 #include "text.h"
 
+#include <filesystem>
 #include <optional>
 
 #include <fmt/core.h>
@@ -31,6 +32,7 @@ Options checked_options_of(const Session& session) {
   if (!a.regions.empty()) options.size.regions = read_size_regions(a.regions.string(), session.context());
   if (!a.point_sizes.empty()) options.size.point_sizes = read_point_sizes(a.point_sizes.string(), session.context());
   for (const std::string& place : a.only) options.adapt.only += (options.adapt.only.empty() ? "" : ";") + place;
+  for (const std::string& name : a.keep) options.adapt.keep += (options.adapt.keep.empty() ? "" : ";") + name;
   if (!a.size_field.empty()) read_sizes_into(options.size, a.size_field.string(), session.context());
   check_options(options);
   return options;
@@ -101,6 +103,13 @@ void check_tet_mesh(Session& session) {
   if (refused > 0) throw InputError(fmt::format("{}: the solver would refuse {}", name, counted(refused, "element")));
 }
 
+/// Of several regions each is a body; one that touches itself is as many as there are spaces in it.
+std::pair<std::uint32_t, std::uint32_t> bodies_and_cavities(const RepairedSurface& clean, const RunContext& context) {
+  if (clean.surface.sides.empty()) return {clean.bodies, clean.cavities};
+  const BoundedSpaces spaces = bounded_spaces(clean.surface, context);
+  return {clean.bodies > 1 ? clean.bodies : spaces.filled, spaces.cavities};
+}
+
 void check_surface(Session& session) {
   const std::string name = session.arguments().input.string();
   IntakeOptions as_it_is = session.arguments().intake;
@@ -118,10 +127,26 @@ void check_surface(Session& session) {
                  {"defects", Json::parse(to_json(defects))}});
   if (!defects.clean()) throw InputError(fmt::format("{}:\n{}", name, defects.describe()));
   const double volume = enclosed_volume(repaired.surface);
-  session.found({{"bodies", repaired.bodies}, {"cavities", repaired.cavities}, {"volume", volume}});
-  session.say(fmt::format("{}: clean: {} {}, {} {}, volume {:.6g}\n", name, repaired.bodies,
-                          repaired.bodies == 1 ? "body" : "bodies", repaired.cavities,
-                          repaired.cavities == 1 ? "cavity" : "cavities", volume));
+  const auto [bodies, cavities] = bodies_and_cavities(repaired, session.context());
+  session.found({{"bodies", bodies}, {"cavities", cavities}, {"volume", volume}});
+  session.say(fmt::format("{}: clean: {} {}, {} {}, volume {:.6g}\n", name, bodies, bodies == 1 ? "body" : "bodies",
+                          cavities, cavities == 1 ? "cavity" : "cavities", volume));
+}
+
+/// What there is to a surface that is refused.
+Json defects_in_json(const SurfaceDefects& defects) {
+  return {{"kind", "surface"}, {"clean", defects.clean()}, {"defects", Json::parse(to_json(defects))}};
+}
+
+/// Runs work(); of a mesh that is not what was required the report is told, and no file is written.
+template <class Work>
+auto telling_what_was_made(Session& session, const Work& work) {
+  try {
+    return work();
+  } catch (const RequirementError& error) {
+    if (session.is_first()) session.tell(error.report);
+    throw;
+  }
 }
 
 // Runs one of the library's generators on the input; its refusals name the file.
@@ -133,12 +158,16 @@ auto run_on_input(Session& session, const Generator& generator) {
   together(session.context().ranks, "input", [&] { domain = open_input(session, intake_for(options, a.intake)); });
   try {
     if (!a.page.empty()) find_repairs(session, domain.surface);
-    return generator(domain, options, session.context());
+    return telling_what_was_made(session, [&] { return generator(domain, options, session.context()); });
   } catch (const OpenCavityError& error) {
     if (!session.is_first()) throw;
     const std::filesystem::path beside = cavity_neighbour(a);
     throw with_cavity_written(error, beside.empty() ? "octafront" : beside);
+  } catch (const DefectsError& error) {
+    session.found(defects_in_json(error.defects));
+    throw InputError(fmt::format("{}: {}", a.input.string(), error.what()));
   } catch (const InputError& error) {
+    tell_defects(session, domain.surface);
     throw InputError(fmt::format("{}: {}", a.input.string(), error.what()));
   }
 }
@@ -230,7 +259,9 @@ void run_improve(Session& session) {
   if (!a.surface.empty()) surface = read_surface(a.surface.string(), session.context()).surface;
   const auto improved = [&] {
     try {
-      return improve_existing(mesh, a.options, a.surface.empty() ? nullptr : &surface, session.context());
+      return telling_what_was_made(session, [&] {
+        return improve_existing(mesh, a.options, a.surface.empty() ? nullptr : &surface, session.context());
+      });
     } catch (const InputError& error) {
       throw InputError(fmt::format("{}: {}", file_at_fault(a, surface).string(), error.what()));
     }
@@ -255,9 +286,9 @@ void tell_adapted(Session& session, const Adapted& result) {
 
 /// Runs work(); its refusals name the input.
 template <class Work>
-auto on_adapted_input(const Session& session, const Work& work) {
+auto on_adapted_input(Session& session, const Work& work) {
   try {
-    return work();
+    return telling_what_was_made(session, work);
   } catch (const InputError& error) {
     throw InputError(fmt::format("{}: {}", session.arguments().input.string(), error.what()));
   }
@@ -310,23 +341,32 @@ void refuse_for_surfaces(const Arguments& a) {
   refuse(!a.carry.empty(), "--carry"), refuse(!a.page.empty(), "--report"), refuse(!a.groups.empty(), "--group");
 }
 
+/// Triangles alone, as files have them; the sets that they had.
+TetMesh mesh_of_triangles(Session& session, SurfaceMesh surface, const SurfaceFile& file) {
+  TetMesh mesh;
+  mesh.points = std::move(surface.points), mesh.boundary = std::move(surface.triangles);
+  mesh.patch = std::move(surface.patch), mesh.patch_names = std::move(surface.patch_names);
+  mesh.patch_labels = std::move(surface.patch_labels);
+  if (const std::string missing = add_placed_sets(mesh, file.sets); !missing.empty())
+    session.say_notes("sets", {missing});
+  return mesh;
+}
+
 void adapt_surface_input(Session& session) {
   const Arguments& a = session.arguments();
   refuse_for_surfaces(a);
   check_surface_targets(a);
   const Options options = checked_options_of(session);
-  const SurfaceMesh surface = read_input(session).surface;
+  const SurfaceFile file = read_input(session);
+  const SurfaceMesh& surface = file.surface;
   const std::optional<MetricMesh> metric = metric_asked_for(session, TetMesh{});
   const std::optional<Domain> ground = open_ground(session);
   const Domain* home = ground ? &*ground : nullptr;
   AdaptedSurface result = on_adapted_input(session, [&] {
-    return metric ? adapt_surface_to_metric(surface, *metric, options, session.context(), home)
-                  : adapt_surface(surface, options, session.context(), home);
+    return metric ? adapt_surface_to_metric(surface, *metric, options, session.context(), home, file.sets)
+                  : adapt_surface(surface, options, session.context(), home, file.sets);
   });
-  TetMesh triangles;
-  triangles.points = std::move(result.surface.points), triangles.boundary = std::move(result.surface.triangles);
-  triangles.patch = std::move(result.surface.patch), triangles.patch_names = std::move(result.surface.patch_names);
-  write_mesh_targets(session, triangles);
+  write_mesh_targets(session, mesh_of_triangles(session, std::move(result.surface), file));
   tell_adapted(session, result);
   say_written(session);
 }
@@ -358,9 +398,25 @@ void run_adapt(Session& session) {
   finish_run(session, result.mesh, nullptr);
 }
 
+namespace {
+
+void convert_surface_input(Session& session) {
+  const Arguments& a = session.arguments();
+  check_surface_targets(a);
+  if (a.new_order == 2) throw OptionError("--order 2 is for tetrahedra, and the input is a surface alone");
+  const SurfaceFile file = read_input(session);
+  write_mesh_targets(session, mesh_of_triangles(session, file.surface, file));
+  say_written(session);
+}
+
+}  // namespace
+
 void run_convert(Session& session) {
   const Arguments& a = session.arguments();
   check_mesh_targets(a);
+  // A pipe can be read once.
+  if (std::filesystem::is_regular_file(a.input) && !holds_tetrahedra(a.input.string(), session.context()))
+    return convert_surface_input(session);
   TetMesh mesh = read_mesh_input(session);
   if (a.new_order == 1) make_linear(mesh);
   if (a.new_order == 2 && !mesh.is_second_order()) make_second_order(mesh, nullptr, 40, session.context());

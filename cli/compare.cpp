@@ -27,6 +27,8 @@ Comparison run_one(const std::filesystem::path& input, const SurfaceFile& file, 
     c.report = generate(file.surface, options, context).report;
   } catch (const Cancelled&) {
     throw;
+  } catch (const LimitError&) {
+    throw;
   } catch (const Error& error) {
     c.failure = error.what();
   }
@@ -69,7 +71,7 @@ void declare_compare(CLI::App& command, CompareArguments& a) {
       ->delimiter(',')
       ->type_name("LIST");
   const auto read_elements = [&a](const std::vector<double>& typed) {
-    for (const double n : typed) a.elements.push_back(whole_number(n));
+    for (const double n : typed) a.elements.push_back(whole_number("--elements", n));
   };
   auto* elements = command
                        .add_option_function<std::vector<double>>("--elements", read_elements,

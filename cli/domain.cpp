@@ -1,7 +1,10 @@
 #include "domain.h"
 
+#include <octafront/cad.h>
 #include <octafront/error.h>
+#include <octafront/image.h>
 #include <octafront/io.h>
+#include <octafront/repair.h>
 
 #include "text.h"
 
@@ -41,6 +44,18 @@ SurfaceMesh marks_of(const std::vector<IntakeRepair>& repairs) {
   return marks;
 }
 
+/// Of files that were refused on the way in: of the first one that has any.
+void tell_defects_of_files(Session& session) {
+  for (const std::filesystem::path& file : session.arguments().bodies) {
+    try {
+      if (is_cad(file.string()) || is_image(file.string())) continue;
+      if (tell_defects(session, read_surface(file.string()).surface))
+        return session.found({{"defects_of", file.string()}});
+    } catch (const InputError&) {  // It is no surface, and the run has said so.
+    }
+  }
+}
+
 [[noreturn]] void fail_with_way(Session& session, const LeakError& leak) {
   Json way = Json::array();
   for (const Vec3 p : leak.way) way.push_back({p.x, p.y, p.z});
@@ -52,6 +67,13 @@ SurfaceMesh marks_of(const std::vector<IntakeRepair>& repairs) {
 }
 
 }  // namespace
+
+bool tell_defects(Session& session, const SurfaceMesh& surface) {
+  if (session.arguments().json.empty() || surface.triangles.empty()) return false;
+  const SurfaceDefects defects = find_defects(repair_surface(surface));
+  if (!defects.clean()) session.found({{"clean", false}, {"defects", Json::parse(to_json(defects))}});
+  return !defects.clean();
+}
 
 std::filesystem::path leak_file(std::filesystem::path output) {
   return output.replace_extension(".leak.ply");
@@ -71,6 +93,9 @@ Domain open_input(Session& session, const IntakeOptions& options) {
     return domain;
   } catch (const LeakError& leak) {
     fail_with_way(session, leak);
+  } catch (const InputError&) {
+    if (!a.json.empty()) tell_defects_of_files(session);
+    throw;
   }
 }
 

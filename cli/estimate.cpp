@@ -1,5 +1,7 @@
 #include "estimate.h"
 
+#include <octafront/limits.h>
+
 #include "presets.h"
 
 #include <algorithm>
@@ -54,10 +56,6 @@ double counted_as(std::string_view name, const Report& report) {
 std::string time_in_words(double seconds) {
   if (seconds < 60) return fmt::format("{:.2g} s", std::max(0.1, seconds));
   return fmt::format("{:.0f} min", std::ceil(seconds / 60));
-}
-
-std::string bytes_in_words(double bytes) {
-  return bytes < 1e9 ? fmt::format("{:.0f} MB", std::ceil(bytes / 1e6)) : fmt::format("{:.1f} GB", bytes / 1e9);
 }
 
 }  // namespace

@@ -13,14 +13,16 @@ enum Status {
   kNoMesh = 4,
   kNotWritten = 5,
   kOutOfMemory = 6,
+  kLimitReached = 7,
   kInterrupted = 130
 };
 
-/// How a run failed.
+/// How a run failed. Words for programs that read the JSON file stay what they are from version to version.
 struct Failure {
   Status status;
-  const char* kind;  ///< a word for programs that read the JSON file
+  const char* kind;  ///< one for each status
   std::string message;
+  std::string code = kind;  ///< what it was, where programs may want to know more
 };
 
 /// What is being handled in a catch clause.

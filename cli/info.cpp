@@ -114,12 +114,9 @@ void run_info(Session& session) {
     throw OptionError(fmt::format("--series is for images, and {} is none that is known here", file.string()));
   if (session.arguments().bodies.size() > 1) throw OptionError("info tells of one file at a time");
   if (!is_tet_mesh_file(file)) return tell_surface_info(session);
-  try {
-    tell_mesh_info(session, read_mesh_input(session));
-  } catch (const InputError& error) {
-    // A background grid is a VTU file too.
-    if (!tell_size_field_info(session)) throw;
-  }
+  // A background grid is a VTU file too, whose hexahedra could be read as a mesh.
+  const bool is_grid = file.extension() == ".vtu" && tell_size_field_info(session);
+  if (!is_grid) tell_mesh_info(session, read_mesh_input(session));
 }
 
 }  // namespace octafront::cli

@@ -1,5 +1,7 @@
 #include "inputs.h"
 
+#include <octafront/limits.h>
+
 #include "text.h"
 
 #include <utility>
@@ -7,13 +9,24 @@
 #include <fmt/core.h>
 
 namespace octafront::cli {
+namespace {
 
-SurfaceFile read_input(const Session& session) {
+/// What a reader has to say, in words and for programs.
+void tell_reading(Session& session, const std::vector<std::string>& notes) {
+  session.say_notes("reading", notes);
+  Json all = Json::array();
+  for (const std::string& note : notes) all.push_back({{"stage", "reading"}, {"text", note}});
+  if (!all.empty()) session.found({{"input_notes", all}});
+}
+
+}  // namespace
+
+SurfaceFile read_input(Session& session) {
   const Arguments& a = session.arguments();
   SurfaceFile file = read_surface(a.input.string(), session.context());
   session.say(
       fmt::format("{}: {}, {}\n", a.input.string(), file.format, counted(file.surface.triangles.size(), "triangle")));
-  session.say_notes("reading", file.notes);
+  tell_reading(session, file.notes);
   return file;
 }
 
@@ -25,16 +38,17 @@ bool is_tet_mesh_file(const std::filesystem::path& file) {
   return false;
 }
 
-TetMesh read_mesh_input(const Session& session) {
+TetMesh read_mesh_input(Session& session) {
   return read_mesh_file_input(session).mesh;
 }
 
-MeshFile read_mesh_file_input(const Session& session) {
+MeshFile read_mesh_file_input(Session& session) {
   const Arguments& a = session.arguments();
   MeshFile file = read_mesh_file(a.input.string(), session.context());
+  require_elements(static_cast<double>(file.mesh.tets.size()), a.input.string());
   session.say(fmt::format("{}: {}, {} tetrahedra{}\n", a.input.string(), file.format, file.mesh.tets.size(),
                           file.mesh.is_second_order() ? " of second order" : ""));
-  session.say_notes("reading", file.notes);
+  tell_reading(session, file.notes);
   return file;
 }
 

@@ -9,10 +9,10 @@
 namespace octafront::cli {
 
 /// The input of a session as a surface, and as a mesh; what reading has to say is said. Throws InputError.
-SurfaceFile read_input(const Session& session);
-TetMesh read_mesh_input(const Session& session);
+SurfaceFile read_input(Session& session);
+TetMesh read_mesh_input(Session& session);
 /// The same with what the file says of it.
-MeshFile read_mesh_file_input(const Session& session);
+MeshFile read_mesh_file_input(Session& session);
 
 /// Tetrahedral meshes are told from surfaces by the ending: no surface format shares one with them.
 bool is_tet_mesh_file(const std::filesystem::path& file);

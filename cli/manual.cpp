@@ -80,7 +80,8 @@ std::string manual_page(const CLI::App& app) {
   for (const CLI::App* command : commands_of(app)) text += section_of(*command);
   text +=
       ".SH EXIT STATUS\n.TP\n0\ndone\n.TP\n2\nwrong usage\n.TP\n3\nthe input was refused\n.TP\n4\nno valid mesh\n"
-      ".TP\n5\nthe output could not be written\n.TP\n6\nout of memory\n.TP\n130\ninterrupted, by Ctrl-C, TERM or a "
+      ".TP\n5\nthe output could not be written\n.TP\n6\nout of memory\n.TP\n7\na limit that was set is "
+      "reached\n.TP\n130\ninterrupted, by Ctrl-C, TERM or a "
       "hang-up\n.TP\n1\na bug of ours\n";
   text += ".SH ENVIRONMENT\n.TP\nTMPDIR\nwhere a mesh waits that goes to standard output\n";
   text += ".SH SEE ALSO\n\\fBoctafront help\\fR \\fICOMMAND\\fR; the documentation that comes with the program.\n";

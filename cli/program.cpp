@@ -42,21 +42,35 @@ std::string unknown(const std::string& what, const std::string& typed, const std
                      nearest.empty() ? "" : fmt::format("; did you mean {}?", nearest));
 }
 
+/// ", such as: octafront mesh part.stl -o part.vtu": the first example of a command; empty if it has none.
+std::string example_of(const CLI::App& command) {
+  const std::string examples = command.get_footer();
+  const std::size_t begin = examples.find("octafront ");
+  if (begin == std::string::npos) return {};
+  return ", such as: " +
+         examples.substr(begin, std::min(examples.find("   ", begin), examples.find('\n', begin)) - begin);
+}
+
 }  // namespace
 
 std::string unknown_command(const CLI::App& app, const std::string& typed) {
   return unknown("command", typed, names_of_commands(app));
 }
 
-std::string usage_error(const CLI::App& app, const CLI::ParseError& error) {
+Failure usage_error(const CLI::App& app, const CLI::ParseError& error) {
   const auto chosen = app.get_subcommands();
   const CLI::App& command = chosen.empty() ? app : *chosen.front();
   // A word that is not known goes before what is missing because of it.
   for (const std::string& extra : command.remaining()) {
-    if (extra.starts_with("--")) return unknown("option", extra.substr(0, extra.find('=')), names_of_options(command));
-    if (chosen.empty()) return unknown_command(app, extra);
+    if (extra.starts_with("--"))
+      return {kUsage, "usage", unknown("option", extra.substr(0, extra.find('=')), names_of_options(command)),
+              "unknown_option"};
+    if (chosen.empty()) return {kUsage, "usage", unknown_command(app, extra), "unknown_command"};
   }
-  return error.what();
+  if (chosen.empty()) return {kUsage, "usage", "give a command, such as: octafront mesh part.stl -o part.vtu"};
+  if (error.get_exit_code() == static_cast<int>(CLI::ExitCodes::RequiredError))
+    return {kUsage, "usage", error.what() + example_of(command)};
+  return {kUsage, "usage", error.what()};
 }
 
 Program::Program() {
@@ -65,7 +79,7 @@ Program::Program() {
   app_.footer(
       "octafront help mesh: options and examples of a command\n"
       "Exit status: 0 done, 2 usage, 3 input refused, 4 no valid mesh, 5 output not written, 6 out of memory, "
-      "130 interrupted (also by a hang-up), 1 a bug of ours");
+      "7 a limit reached, 130 interrupted (also by a hang-up), 1 a bug of ours");
   // Else names that begin with a slash would be options on Windows.
   app_.allow_windows_style_options(false);
   declare_makers();
@@ -115,6 +129,7 @@ void Program::declare_makers() {
   declare_layers(*mesh, a);
   declare_volume(*mesh, a);
   declare_improvement(*mesh, a);
+  declare_requirements(*mesh, a, true);
   declare_order(*mesh, a);
   declare_split(*mesh, a);
   declare_page(*mesh, a);
@@ -180,6 +195,7 @@ void Program::declare_surfaces() {
   declare_mesh_output(*better, a);
   declare_ground(*better, a);
   declare_improvement(*better, a);
+  declare_requirements(*better, a, false);
   declare_order(*better, a);
   declare_page(*better, a);
   declare_report(*better, a);
@@ -198,6 +214,7 @@ void Program::declare_surfaces() {
   declare_mesh_output(*adapted, a);
   declare_sizes(*adapted, a);
   declare_adaptation(*adapted, a);
+  declare_requirements(*adapted, a, true);
   declare_page(*adapted, a);
   declare_report(*adapted, a);
   declare_run(*adapted, a);
@@ -277,12 +294,19 @@ void Program::help(Session& session) const {
   throw OptionError(unknown_command(app_, topic_));
 }
 
+std::string command_line_of(int argc, const char* const* argv) {
+  std::string line = "octafront";
+  for (int i = 1; i < argc; ++i) line += " " + quoted_for_shell(argv[i]);
+  return line;
+}
+
 Arguments& Program::arguments(int argc, char** argv) {
   const CLI::App& command = *app_.get_subcommands().front();
   Arguments& a = command.get_name() == "compare" ? compare_.common : arguments_;
   note_command(command, a);
-  a.command_line = "octafront";
-  for (int i = 1; i < argc; ++i) a.command_line += " " + quoted_for_shell(argv[i]);
+  a.command_line = command_line_of(argc, argv);
+  a.words_with_line_ends = words_with_line_ends(argc, argv);
+  set_process_limits(a.limits);
   if (a.input == kStandardOutput) a.input = "/dev/stdin";
   for (std::filesystem::path& body : a.bodies)
     if (body == kStandardOutput) body = "/dev/stdin";

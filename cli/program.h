@@ -16,7 +16,8 @@ class Program {
   Program& operator=(const Program&) = delete;
 
   CLI::App& app() { return app_; }
-  /// What a command line that was parsed asked for. Throws OptionError for lengths whose unit means nothing.
+  /// What a command line that was parsed asked for; its limits hold from then on. Throws OptionError for lengths whose
+  /// unit means nothing.
   Arguments& arguments(int argc, char** argv);
   const std::function<void(Session&)>& chosen() const { return chosen_; }
 
@@ -38,7 +39,10 @@ class Program {
 };
 
 /// What is wrong with a command line, in words, with the word that may have been meant.
-std::string usage_error(const CLI::App& app, const CLI::ParseError& error);
+Failure usage_error(const CLI::App& app, const CLI::ParseError& error);
+
+/// The words of a command line, quoted for a shell.
+std::string command_line_of(int argc, const char* const* argv);
 
 /// "there is no command mehs; did you mean mesh?"
 std::string unknown_command(const CLI::App& app, const std::string& typed);

@@ -2,10 +2,12 @@
 
 #include <octafront/error.h>
 #include <octafront/io.h>
+#include <octafront/limits.h>
 
 #include <algorithm>
 #include <array>
 #include <cerrno>
+#include <cmath>
 #include <csignal>
 #include <fstream>
 #include <string_view>
@@ -40,6 +42,10 @@ void rehearse_reading(const std::filesystem::path&) {}
 [[noreturn]] void read_and_exit(const std::filesystem::path& file) {
   const rlimit none{0, 0};
   setrlimit(RLIMIT_CORE, &none);
+  if (const double left = std::ceil(cpu_seconds_left()); std::isfinite(left)) {
+    const rlimit seconds{static_cast<rlim_t>(left), static_cast<rlim_t>(left)};
+    setrlimit(RLIMIT_CPU, &seconds);
+  }
   for (const int signal : {SIGINT, SIGTERM, SIGHUP}) std::signal(signal, SIG_DFL);
   try {
     static_cast<void>(read_mesh_file(file.string()));

@@ -1,6 +1,7 @@
 #include "session.h"
 
 #include <octafront/error.h>
+#include <octafront/formula.h>
 #include <octafront/io.h>
 #include <octafront/ranks.h>
 
@@ -52,6 +53,22 @@ std::vector<NamedFile> outputs_of(const Arguments& a) {
   return without_unused(std::move(all));
 }
 
+/// Throws InputError for a file that is not there, with the one beside it that may have been meant; formulas are none.
+void require_there(const std::filesystem::path& file) {
+  std::error_code error;
+  const std::filesystem::file_status status = std::filesystem::status(file, error);
+  if (status.type() != std::filesystem::file_type::not_found || is_formula(file.string())) return;
+  std::vector<std::string> names;
+  const std::filesystem::path folder = file.has_parent_path() ? file.parent_path() : ".";
+  constexpr std::size_t kMostNames = 10000;
+  for (std::filesystem::directory_iterator at(folder, error), end; !error && at != end; at.increment(error))
+    if (names.size() < kMostNames) names.push_back(at->path().filename().string());
+  std::sort(names.begin(), names.end());
+  const std::string nearest = nearest_word(file.filename().string(), names);
+  throw InputError(fmt::format("{}: there is no such file{}", file.string(),
+                               nearest.empty() ? "" : fmt::format("; did you mean {}?", nearest)));
+}
+
 /// What is written to standard output, but for the table.
 int uses_of_standard_output(const Arguments& a) {
   return (a.json == kStandardOutput) + (a.output == kStandardOutput) + (a.page == kStandardOutput) +
@@ -65,6 +82,10 @@ Session::Session(const Arguments& arguments, Ranks* ranks)
   context_.ranks = ranks;
 }
 
+std::string Session::shown(const std::string& text) const {
+  return printable(arguments_.names.translated(text), arguments_.words_with_line_ends);
+}
+
 bool Session::is_first() const {
   return context_.ranks == nullptr || context_.ranks->rank() == 0;
 }
@@ -72,7 +93,7 @@ bool Session::is_first() const {
 void Session::say(const std::string& text) const {
   clear_progress();
   if (arguments_.quiet || uses_of_standard_output(arguments_) > 0) return;
-  std::fputs(printable(arguments_.names.translated(text)).c_str(), stdout);
+  std::fputs(shown(text).c_str(), stdout);
   std::fflush(stdout);
 }
 
@@ -87,8 +108,7 @@ void Session::say_notes(const std::string& stage, const std::vector<std::string>
 void Session::warn(const std::string& stage, const std::vector<std::string>& notes) const {
   if (!arguments_.quiet && uses_of_standard_output(arguments_) == 0) return say_notes(stage, notes);
   clear_progress();
-  for (const std::string& note : notes)
-    fmt::print(stderr, "octafront: warning ({}): {}\n", stage, printable(arguments_.names.translated(note)));
+  for (const std::string& note : notes) fmt::print(stderr, "octafront: warning ({}): {}\n", stage, shown(note));
 }
 
 void Session::tell(const Report& report) {
@@ -99,12 +119,10 @@ void Session::tell(const Report& report) {
 Json Session::json(const Json& error) const {
   Json options = Json::object();
   for (const auto& [option, value] : arguments_.given) options[option] = value;
-  Json all{{"program", "octafront"},
-           {"version", OCTAFRONT_VERSION},
-           {"command", arguments_.command},
-           {"command_line", arguments_.command_line},
-           {"input", arguments_.input.string()},
-           {"options", options}};
+  Json all = json_head(arguments_.command, arguments_.command_line);
+  all["status"] = error.is_null() ? Json(0) : error["status"];
+  all["input"] = arguments_.input.string();
+  all["options"] = options;
   if (arguments_.bodies.size() > 1)
     for (const std::filesystem::path& body : arguments_.bodies) all["inputs"].push_back(body.string());
   if (!error.is_null()) all["error"] = error;
@@ -113,15 +131,27 @@ Json Session::json(const Json& error) const {
 }
 
 void Session::write_json(const Json& error) const {
-  if (arguments_.json.empty()) return;
+  if (!arguments_.json.empty()) write_json_to(arguments_.json, json(error));
+}
+
+Json json_head(const std::string& command, const std::string& command_line) {
+  return {
+      {"program", "octafront"}, {"version", OCTAFRONT_VERSION}, {"command", command}, {"command_line", command_line}};
+}
+
+Json json_of(const Failure& failure) {
+  return {{"status", static_cast<int>(failure.status)},
+          {"kind", failure.kind},
+          {"code", failure.code},
+          {"message", failure.message}};
+}
+
+void write_json_to(const std::filesystem::path& target, const Json& json) {
   // Names of files may hold bytes that no text has.
-  const std::string text = json(error).dump(2, ' ', false, Json::error_handler_t::replace) + "\n";
-  if (arguments_.json == kStandardOutput) {
-    clear_progress();
-    std::fputs(text.c_str(), stdout);
-  } else {
-    write_text(arguments_.json.string(), text);
-  }
+  const std::string text = printable_json(json.dump(2, ' ', false, Json::error_handler_t::replace)) + "\n";
+  if (target != kStandardOutput) return write_text(target.string(), text);
+  clear_progress();
+  std::fputs(text.c_str(), stdout);
 }
 
 std::filesystem::path cavity_neighbour(const Arguments& a) {
@@ -131,6 +161,7 @@ std::filesystem::path cavity_neighbour(const Arguments& a) {
 }
 
 void check_files(const Arguments& a) {
+  for (const std::filesystem::path& body : a.bodies) require_there(body);
   if (uses_of_standard_output(a) > 1)
     throw OptionError("only one of the outputs can go to standard output; give files for the others");
   const std::vector<NamedFile> inputs = inputs_of(a), outputs = outputs_of(a);

@@ -4,6 +4,7 @@
 #include <octafront/run_context.h>
 
 #include "arguments.h"
+#include "failure.h"
 
 #include <nlohmann/json.hpp>
 #include <string>
@@ -40,6 +41,8 @@ class Session {
   /// Further keys of the JSON file.
   void found(const Json& keys) { findings_.update(keys); }
 
+  /// `text` as it may go to a terminal, with fields of Options as the command line names them.
+  std::string shown(const std::string& text) const;
   /// All that is known of the run; `error` is null for one that did what it was asked.
   Json json(const Json& error) const;
   /// Writes the JSON file if one is wanted; `error` is null for a run that did what it was asked. Throws OutputError.
@@ -50,6 +53,13 @@ class Session {
   RunContext context_;
   Json findings_ = Json::object();
 };
+
+/// What the JSON of every run begins with.
+Json json_head(const std::string& command, const std::string& command_line);
+/// `error` of the JSON of a run that failed.
+Json json_of(const Failure& failure);
+/// Writes it. Throws OutputError.
+void write_json_to(const std::filesystem::path& target, const Json& json);
 
 /// The output that a cavity which stays open is written beside; empty if there is none.
 std::filesystem::path cavity_neighbour(const Arguments& arguments);

@@ -139,7 +139,9 @@ std::vector<std::string> write_one(const std::filesystem::path& file, const TetM
 }  // namespace
 
 void check_mesh_targets(const Arguments& a) {
-  if (a.meshes.empty()) throw OptionError("--output is required: where the mesh goes, such as -o mesh.vtu");
+  if (a.meshes.empty())
+    throw OptionError(fmt::format("--output is required: where the mesh goes, such as -o {}.vtu",
+                                  a.input.stem().empty() ? "mesh" : a.input.stem().string()));
   if (!a.formats.empty() && a.formats.size() != a.meshes.size())
     throw OptionError(fmt::format("--format is given {} and -o {} times: give each output its format, in turn",
                                   a.formats.size(), a.meshes.size()));

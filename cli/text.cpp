@@ -1,6 +1,7 @@
 #include "text.h"
 
 #include <algorithm>
+#include <cstdint>
 #include <numeric>
 
 #include <fmt/core.h>
@@ -19,10 +20,25 @@ std::size_t character_length(std::string_view text) {
   return length;
 }
 
+/// The code point of a character of one to three bytes; else 0x10000.
+std::uint32_t code_point(std::string_view character) {
+  const auto byte = [&](std::size_t i) { return std::uint32_t{static_cast<unsigned char>(character[i])}; };
+  if (character.size() == 1) return byte(0);
+  if (character.size() == 2) return (byte(0) & 0x1f) << 6 | (byte(1) & 0x3f);
+  if (character.size() == 3) return (byte(0) & 0xf) << 12 | (byte(1) & 0x3f) << 6 | (byte(2) & 0x3f);
+  return 0x10000;
+}
+
+/// What moves the cursor, or what is written around it: also lines, paragraphs and directions of Unicode.
 bool is_control(std::string_view character) {
-  const auto first = static_cast<unsigned char>(character[0]);
-  if (character.size() == 1) return (first < 0x20 && first != '\n') || first == 0x7f;
-  return first == 0xc2 && static_cast<unsigned char>(character[1]) < 0xa0;
+  const std::uint32_t c = code_point(character);
+  return (c < 0x20 && c != '\n') || (c >= 0x7f && c < 0xa0) || (c >= 0x2028 && c <= 0x202e) ||
+         (c >= 0x2066 && c <= 0x2069) || c == 0x200e || c == 0x200f || c == 0xfeff;
+}
+
+void replace_all(std::string& text, const std::string& word, const std::string& by) {
+  for (std::size_t at = text.find(word); at != std::string::npos; at = text.find(word, at + by.size()))
+    text.replace(at, word.size(), by);
 }
 
 /// Insertions, deletions and replacements of a character between two words.
@@ -54,6 +70,42 @@ std::string printable(std::string_view text) {
       for (const char c : character) out += fmt::format("\\x{:02x}", static_cast<unsigned char>(c));
     }
     text.remove_prefix(character.size());
+  }
+  return out;
+}
+
+std::string printable(std::string text, const std::vector<std::string>& words) {
+  for (const std::string& word : words) {
+    std::string flat = word;
+    replace_all(flat, "\n", "\\n");
+    replace_all(text, word, flat);
+  }
+  return printable(text);
+}
+
+std::vector<std::string> words_with_line_ends(int argc, const char* const* argv) {
+  std::vector<std::string> words;
+  const auto add = [&](const std::string& word) {
+    if (word.find('\n') != std::string::npos && word != "\n") words.push_back(word);
+  };
+  for (int i = 1; i < argc; ++i) {
+    const std::string word = argv[i];
+    if (word.find('\n') == std::string::npos) continue;
+    const std::filesystem::path value = word.substr(word.find('=') + 1);
+    for (const std::filesystem::path& part : {std::filesystem::path(word), value, value.filename(), value.stem()})
+      add(part.string());
+  }
+  std::stable_sort(words.begin(), words.end(), [](const auto& a, const auto& b) { return a.size() > b.size(); });
+  return words;
+}
+
+std::string printable_json(const std::string& text) {
+  std::string out;
+  for (std::string_view rest = text; !rest.empty();) {
+    const std::size_t length = std::max<std::size_t>(1, character_length(rest));
+    const std::string_view character = rest.substr(0, length);
+    out += is_control(character) ? fmt::format("\\u{:04x}", code_point(character)) : std::string(character);
+    rest.remove_prefix(length);
   }
   return out;
 }

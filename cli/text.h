@@ -10,6 +10,15 @@ namespace octafront::cli {
 /// `text` as it may go to a terminal: control characters, which names of files may hold, as \xNN; line ends stay.
 std::string printable(std::string_view text);
 
+/// The same with line ends as \n where they belong to one of these words: names must not begin lines of their own.
+std::string printable(std::string text, const std::vector<std::string>& words);
+
+/// Of the words of a command line, and the names in them, those with line ends; the longest first.
+std::vector<std::string> words_with_line_ends(int argc, const char* const* argv);
+
+/// Text of JSON with control characters as \u00NN where JSON itself lets them be.
+std::string printable_json(const std::string& text);
+
 /// `text` as a field of CSV: in quotes where it holds commas, quotes or line ends.
 std::string csv_field(const std::string& text);
 

@@ -241,6 +241,7 @@ FURTHER = {
     "size_field": "SizeField | Path | tuple[npt.ArrayLike, npt.ArrayLike, npt.ArrayLike] | None = None",
     "unit": "str | None = None", "after_pass": "Callable[[str, dict[str, Any]], object] | None = None", "progress": "Progress | None = None",
     "threads": "int = 0", "comm": "Any = None", "only": "str | Sequence[str] = ''",
+    "keep": "str | Sequence[str] = ''",
 }
 OF_IMAGES = """\
     spacing: npt.ArrayLike | None = None,

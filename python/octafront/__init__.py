@@ -209,6 +209,8 @@ def adapt(mesh, *, sizes=None, metric=None, fields=None, surface=None, **keyword
         octafront.metrics. Sizes have no say beside it.
     only: what may change, a place or several: "box:X0,Y0,Z0,X1,Y1,Z1", "sphere:X,Y,Z,R", or a region, patch, curve or set
     by its name; all but it and a `halo` of layers around keeps its bits and numbers.
+    keep: what stays as it is, a name or several: of patches, curves and sets, of a region for the walls around it, or numbers
+        of patches. `fix_boundary`: the triangles of the outer boundary stay.
 
     surface: what walls stand for instead, where it is near them: a Surface, the name of its file, of a CAD file, whose true
         geometry they go to, or (points, triangles). It need not be closed.
@@ -232,8 +234,9 @@ def adapt(mesh, *, sizes=None, metric=None, fields=None, surface=None, **keyword
         keywords["size_field"] = (old.points, old.triangles if is_surface else old.tets, sizes)
     if is_surface and fields:
         raise OptionError("`fields` go along with meshes of tetrahedra; this is a surface alone")
-    if not isinstance(keywords.get("only", ""), str):
-        keywords["only"] = ";".join(keywords["only"])
+    for names in ("only", "keep"):
+        if not isinstance(keywords.get(names, ""), str):
+            keywords[names] = ";".join(keywords[names])
     settings = _Settings("adapt", "adapt", keywords)
     values = {name: _fields.field_on(old, name, array) for name, array in dict(fields or {}).items()}
     if isinstance(surface, tuple):
@@ -304,8 +307,8 @@ def join_bodies(bodies, *, regions=None, voids=None, cells="auto", overlap="auto
     """Several closed bodies as one complex, which mesh() fills with one mesh: where they touch they share faces, where
     they overlap the later one has its way. A Surface with a region for each, report as of complex_of_walls().
 
-    bodies: {name: Surface, or its file}, in order. tolerance: what is nearer comes together (default: a millionth of the
-    diagonal). regions and voids name and empty what bodies enclose but none fills; cells="merge": one region of all.
+    bodies: {name: Surface, or its file}, in order. tolerance: walls nearer to each other are one (default: what facets
+    explain, or a small part of the size). regions and voids name and empty what bodies enclose but none fills; cells="merge": one region of all.
     overlap: who has what bodies share: "first", "later", or "new": it is a region of its own, "a&b".
 
     Raises InputError, with the name of the body at fault; OptionError, Cancelled.
@@ -313,6 +316,15 @@ def join_bodies(bodies, *, regions=None, voids=None, cells="auto", overlap="auto
     >>> octafront.mesh(octafront.join_bodies({"plate": "plate.stl", "bolt": "bolt.stl"})).save("bolted.msh")
     """
     return _complexes.of_bodies(bodies, regions, voids, cells, overlap, tolerance, threads, progress)
+
+
+def _checked_as_walls(what, triangles):
+    """The report of a surface that is clean as the walls of regions, or touches itself in edges and vertices; or None."""
+    try:
+        report = repair(complex_of_walls(what, triangles)).report
+    except InputError:
+        return None
+    return report if report["clean"] else None
 
 
 def check(what, triangles=None, *, solver=None):
@@ -331,6 +343,8 @@ def check(what, triangles=None, *, solver=None):
     if solver:
         raise OptionError("`solver` looks at tetrahedral meshes; this is a surface")
     report = repair(what, triangles).report
+    if not report["clean"]:
+        report = _checked_as_walls(what, triangles) or report
     return Checked(text=report.pop("described") or "a clean surface", **{"volume": None, **report})
 
 

@@ -114,11 +114,16 @@ class Job:
             error = errors.OpenCavityError(message)
             error.cavity = Surface._of(cavity)
             return error
-        kinds = {2: errors.OptionError, 4: errors.MeshingError, 5: errors.OutputError}
+        if status == 4:
+            error = errors.MeshingError(message)
+            error.report = report or None
+            return error
+        kinds = {2: errors.OptionError, 5: errors.OutputError}
         return kinds.get(status, errors.InternalError)(message)
 
 
 def _with_spoken_notes(node):
     if "notes" in node:
-        node["notes"] = [spoken(note) for note in node["notes"]]
+        node["notes"] = [spoken(note) if isinstance(note, str) else {**note, "text": spoken(note["text"])}
+                         for note in node["notes"]]
     return node

@@ -22,7 +22,13 @@ class InputError(Error, ValueError):
 
 
 class MeshingError(Error, RuntimeError):
-    """The run ended without a valid mesh; on valid input that is a bug of octafront."""
+    """The run ended without a valid mesh, which on valid input is a bug of octafront; or with one that is not what
+    `require_volume`, `require_angle` or `require_size` want.
+
+    report: of the mesh that was not what was required, else None.
+    """
+
+    report = None
 
 
 class OpenCavityError(MeshingError):
