@@ -2,7 +2,8 @@
 """Meshes generated nasty but legal solids at three sizes, and judges each run; writes docs/measured/nasty-solids.md.
 
   scripts/nasty_solids.py [FIRST:END[:STRIDE]] [--seed N] [--families A,B] [--sizes automatic,coarse,fine] [--page] [--keep FOLDER]
-  scripts/nasty_solids.py --write NUMBER FILE.off          a case as a file
+  scripts/nasty_solids.py --thin 0:56                      of scripts/lib/thin_solids.py: rods, springs, brushes, foams, ...
+  scripts/nasty_solids.py [--thin] --write NUMBER FILE.off a case as a file
 
 Cases 0 to 1999 by default, every STRIDE-th (an odd one, not of 13, meets all 26 families), one at a time on one thread,
 each within a limit on its processor time. A run is good if it ends with a mesh that `octafront check` finds valid, in time,
@@ -25,6 +26,7 @@ import time
 ROOT = pathlib.Path(__file__).resolve().parents[1]
 sys.path[:0] = [str(ROOT / "scripts/lib"), str(ROOT / "bench")]
 import nasty_solids as solids
+import thin_solids
 from origin import written_by
 
 OCTAFRONT = os.environ.get("OCTAFRONT", str(ROOT / "build/release/cli/octafront"))
@@ -158,6 +160,7 @@ def main():
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
     parser.add_argument("cases", nargs="?", default="0:2000", metavar="FIRST:END[:STRIDE]")
     parser.add_argument("--seed", type=int, default=0)
+    parser.add_argument("--thin", action="store_true", help="thin and many-fold solids")
     parser.add_argument("--families")
     parser.add_argument("--sizes", default=",".join(SIZES))
     parser.add_argument("--seconds", type=float, default=math.inf, help="begin no further case after so many")
@@ -166,17 +169,18 @@ def main():
     parser.add_argument("--keep", metavar="FOLDER", help="leave the solids that failed there")
     parser.add_argument("--write", nargs=2, metavar=("NUMBER", "FILE.off"))
     arguments = parser.parse_args()
+    generated = thin_solids if arguments.thin else solids
     if arguments.write:
-        solids.write_off(arguments.write[1], solids.make(int(arguments.write[0]), arguments.seed)[1])
+        solids.write_off(arguments.write[1], generated.make(int(arguments.write[0]), arguments.seed)[1])
         return 0
     cases = range(*(int(x) for x in arguments.cases.split(":")))
-    families = arguments.families.split(",") if arguments.families else list(solids.FAMILIES)
+    families = arguments.families.split(",") if arguments.families else list(generated.FAMILIES)
     runs, begun = [], time.monotonic()
     with tempfile.TemporaryDirectory() as name:
         folder = pathlib.Path(name)
         plain = plain_seconds(folder)
         for number in cases:
-            family, solid = solids.make(number, arguments.seed)
+            family, solid = generated.make(number, arguments.seed)
             if family not in families:
                 continue
             if time.monotonic() - begun > arguments.seconds:
