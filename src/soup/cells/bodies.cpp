@@ -378,18 +378,19 @@ struct Brought {
   Arrangement arranged;
 };
 
-/// Where walls that were brought together whole do not settle, as rough ones may not, only their rims are.
+/// Where walls that were brought together whole do not settle, as coarse ones may not, they stay where they are: what
+/// lies between them is given away as slivers.
 Brought bring_together(const cells::BodySoup& soup, const cells::Misfits& misfits, const RunContext& context) {
-  const auto brought = [&](cells::Closes what) {
-    Brought made{close_gaps(soup, misfits, what, context), {}};
+  const auto brought = [&](const cells::Misfits& by) {
+    Brought made{close_gaps(soup, by, cells::Closes::kWalls, context), {}};
     made.arranged = arrange(made.closed.points, made.closed.triangles, context);
     return made;
   };
   try {
-    return brought(cells::Closes::kWalls);
+    return brought(misfits);
   } catch (const InputError&) {
     if (misfits.largest() <= misfits.floor()) throw;
-    return brought(cells::Closes::kRims);
+    return brought(misfits.without_contacts());
   }
 }
 

@@ -63,6 +63,12 @@ class Misfits {
   /// What is that near comes together: corners of three walls are farther apart than the walls.
   double reach(std::uint32_t a, std::uint32_t b) const { return std::max(floor_, kOfCorner * misfit(a, b)); }
   double largest() const;
+  /// As if no two bodies were in contact.
+  Misfits without_contacts() const {
+    Misfits none = *this;
+    none.misfit_.clear();
+    return none;
+  }
   /// What is that near is the same for any two bodies; 0: exactly as they are.
   double floor() const { return floor_; }
   std::uint32_t bodies() const { return bodies_; }

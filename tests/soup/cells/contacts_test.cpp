@@ -46,8 +46,7 @@ double polygon(int sides, double radius) {
   return sides / 2.0 * radius * radius * std::sin(2 * std::acos(-1) / sides);
 }
 
-// Fails where facets of both bodies cross again after rounding; the joining of such walls is not done.
-TEST(Contacts, DISABLED_TheWallOfTheEarlierBodyIsLeftWhateverTheSides) {
+TEST(Contacts, TheWallOfTheEarlierBodyIsLeftWhateverTheSides) {
   struct Sides {
     int ring, pin;
   };
@@ -75,8 +74,7 @@ TEST(Contacts, ABoltThatStandsOut) {
   EXPECT_TRUE(self_intersections(complex.surface.points, complex.surface.triangles).empty());
 }
 
-// Fails where facets of both bodies cross again after rounding; the joining of such walls is not done.
-TEST(Contacts, DISABLED_PartOfAWall) {
+TEST(Contacts, PartOfAWall) {
   const SurfaceMesh inner = faceted_pin(24, 5, 0, 4), plaque = testing::faceted_segment(13, 5, 7, 1, 3, .3, 1.3);
   const Complex complex = joined_at({{"inner", inner}, {"plaque", plaque}}, 1);
   EXPECT_NEAR(complex.volumes[0], 4 * polygon(24, 5), 1e-9);
