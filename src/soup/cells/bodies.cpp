@@ -373,27 +373,6 @@ double moved_volume(const Together& all, const cells::ClosedGaps& closed, std::s
   return moved;
 }
 
-struct Brought {
-  cells::ClosedGaps closed;
-  Arrangement arranged;
-};
-
-/// Where walls that were brought together whole do not settle, as coarse ones may not, they stay where they are: what
-/// lies between them is given away as slivers.
-Brought bring_together(const cells::BodySoup& soup, const cells::Misfits& misfits, const RunContext& context) {
-  const auto brought = [&](const cells::Misfits& by) {
-    Brought made{close_gaps(soup, by, cells::Closes::kWalls, context), {}};
-    made.arranged = arrange(made.closed.points, made.closed.triangles, context);
-    return made;
-  };
-  try {
-    return brought(misfits);
-  } catch (const InputError&) {
-    if (misfits.largest() <= misfits.floor()) throw;
-    return brought(misfits.without_contacts());
-  }
-}
-
 bool lexicographic_order(Vec3 a, Vec3 b) {
   return std::tie(a.x, a.y, a.z) < std::tie(b.x, b.y, b.z);
 }
@@ -429,19 +408,37 @@ void note_changes(const cells::ClosedGaps& closed, const std::string& walls, dou
 
 namespace cells {
 
-Joined joined_bodies(const std::vector<Body>& bodies, const ComplexOptions& options, const ElementsToCome& elements,
-                     const RunContext& context) {
+namespace {
+
+/// What is joined, and what counts as one wall.
+struct Joining {
+  const std::vector<Body>& bodies;
+  const ComplexOptions& options;
+  const Together& all;
+  const Misfits& misfits;
+  const RunContext& context;
+};
+
+/// The bodies as one complex, and how well their walls have come together.
+struct Way {
+  Joined joined;
+  std::uint64_t crossings = 0;
+  double shortest = HUGE_VAL;  ///< edge
+};
+
+double shortest_edge(const SurfaceMesh& surface) {
+  double least = HUGE_VAL;
+  for (const Triangle& t : surface.triangles)
+    for (int i = 0; i < 3; ++i) least = std::min(least, distance(surface.points[t[i]], surface.points[t[(i + 1) % 3]]));
+  return least;
+}
+
+/// Walls that are `near` come together; what lies between others that belong together is given away as slivers.
+Way joined_by(const Misfits& near, const Joining& joining) {
   using Overlap = ComplexOptions::Overlap;
-  if (bodies.empty()) throw OptionError("there is no body to join");
-  if (options.tolerance && !(*options.tolerance >= 0))
-    throw OptionError(fmt::format("`tolerance` is {}; it must not be below 0", *options.tolerance));
-  Complex before;
-  Together all = put_together(bodies, before, context);
-  const BodySoup soup{all.points, all.triangles, all.body};
-  const Misfits misfits(soup, limits_for(options, elements, bodies), context);
-  const Brought brought = bring_together(soup, misfits, context);
-  const ClosedGaps& closed = brought.closed;
-  const Arrangement& arranged = brought.arranged;
+  const auto& [bodies, options, all, misfits, context] = joining;
+  const ClosedGaps closed = close_gaps({all.points, all.triangles, all.body}, near, context);
+  const Arrangement arranged = arrange(closed.points, closed.triangles, context);
   const Cells cells(arranged.points, arranged.triangles, context);
 
   std::vector<std::uint32_t> body_of;
@@ -486,7 +483,7 @@ Joined joined_bodies(const std::vector<Body>& bodies, const ComplexOptions& opti
   complex.surface.patch_names = patches.names();
   // Said of the regions, from whose names these are made.
   NameCleaning().clean(complex.surface.patch_names);
-  std::vector<std::string> notes = std::move(before.notes);
+  std::vector<std::string> notes;
   const double moved = slivers.volume + moved_volume(all, closed, bodies.size());
   note_changes(closed, in_words(misfits, bodies), moved, misfits.floor(), arranged, notes);
   if (slivers.count > 0) notes.push_back(fmt::format("{} between bodies closed", counted(slivers.count, "thin gap")));
@@ -494,7 +491,41 @@ Joined joined_bodies(const std::vector<Body>& bodies, const ComplexOptions& opti
   note_common_regions(labelled, bodies.size(), end_of_common, notes);
   notes.insert(notes.end(), complex.notes.begin(), complex.notes.end());
   complex.notes = std::move(notes);
-  return {std::move(complex), are_nested(windings)};
+  const double shortest = shortest_edge(complex.surface);
+  return {{std::move(complex), are_nested(windings)}, arranged.new_points, shortest};
+}
+
+/// Walls of fine facets are best brought together whole. Coarse ones may cross in vain then, and are better left where
+/// they are.
+Way best_way(const Joining& joining) {
+  const Misfits& misfits = joining.misfits;
+  if (misfits.largest() <= misfits.floor()) return joined_by(misfits, joining);
+  std::optional<Way> together;
+  try {
+    together = joined_by(misfits, joining);
+    if (together->crossings == 0) return std::move(*together);
+    Way apart = joined_by(misfits.without_contacts(), joining);
+    return apart.shortest > together->shortest ? std::move(apart) : std::move(*together);
+  } catch (const InputError&) {
+    if (together) return std::move(*together);
+    return joined_by(misfits.without_contacts(), joining);
+  }
+}
+
+}  // namespace
+
+Joined joined_bodies(const std::vector<Body>& bodies, const ComplexOptions& options, const ElementsToCome& elements,
+                     const RunContext& context) {
+  if (bodies.empty()) throw OptionError("there is no body to join");
+  if (options.tolerance && !(*options.tolerance >= 0))
+    throw OptionError(fmt::format("`tolerance` is {}; it must not be below 0", *options.tolerance));
+  Complex before;
+  const Together all = put_together(bodies, before, context);
+  const Misfits misfits({all.points, all.triangles, all.body}, limits_for(options, elements, bodies), context);
+  Way best = best_way({bodies, options, all, misfits, context});
+  std::vector<std::string>& notes = best.joined.complex.notes;
+  notes.insert(notes.begin(), before.notes.begin(), before.notes.end());
+  return std::move(best.joined);
 }
 
 Complex join_bodies(const std::vector<Body>& bodies, const ComplexOptions& options, const ElementsToCome& elements,

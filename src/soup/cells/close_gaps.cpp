@@ -86,8 +86,6 @@ struct Party {
   std::map<VertexIndex, std::vector<std::uint32_t>> around;
   std::set<Edge> ends;  ///< where sheets end
   std::set<VertexIndex> end_vertices;
-  std::set<Edge> sharp;
-  std::set<VertexIndex> sharp_vertices;
 
   Party(std::vector<BodyFace> given, const std::vector<Vec3>& points) : faces(std::move(given)) {
     for (const BodyFace& f : faces) {
@@ -101,18 +99,11 @@ struct Party {
   void find_ends() {
     ends.clear();
     end_vertices.clear();
-    sharp.clear();
-    sharp_vertices.clear();
     std::map<Edge, std::vector<std::uint32_t>> uses;
     for (std::uint32_t t = 0; t < triangles.size(); ++t)
       for (int i = 0; i < 3; ++i) uses[sorted_edge(triangles[t][i], triangles[t][(i + 1) % 3])].push_back(t);
     for (const auto& [e, of] : uses) {
-      if (e[0] == e[1]) continue;
-      if (of.size() != 2 || !is_curved(normals[of[0]], normals[of[1]])) {
-        sharp.insert(e);
-        sharp_vertices.insert(e.begin(), e.end());
-      }
-      if (of.size() != 1) continue;
+      if (e[0] == e[1] || of.size() != 1) continue;
       ends.insert(e);
       end_vertices.insert(e.begin(), e.end());
     }
@@ -128,14 +119,13 @@ struct Party {
 class BodyMeeting {
  public:
   BodyMeeting(std::vector<Vec3>& points, std::vector<BodyFace> earlier, std::vector<BodyFace> later,
-              const Misfits& misfits, const Lengths& lengths, Closes what, const RunContext& context)
+              const Misfits& misfits, const Lengths& lengths, const RunContext& context)
       : points_(points),
         earlier_(std::move(earlier), points),
         later_(std::move(later), points),
         body_(later_.faces.front().body),
         misfits_(misfits),
         lengths_(lengths),
-        what_(what),
         context_(context) {
     for (const BodyFace& f : earlier_.faces) most_ = std::max(most_, reach(f));
   }
@@ -187,33 +177,31 @@ class BodyMeeting {
   void move_vertex(VertexIndex v, const TriangleTree& tree, double of_reach) {
     const Vec3 p = points_[v];
     const double floor = misfits_.floor();
-    const bool is_fixed = what_ == Closes::kRims && !later_.sharp_vertices.contains(v);
-    double nearest = TriangleTree::kFar, bound = 0;
+    double nearest = TriangleTree::kFar;
     Vec3 at;
     tree.for_each_box_near(grown({p, p}, of_reach), [&](std::uint32_t t, const TriangleCorners& c) {
       if (reach(earlier_.faces[t]) != of_reach) return true;
       const Vec3 q = closest_point_on_triangle(p, c[0], c[1], c[2]);
-      const double d = distance(p, q), r = is_fixed ? floor : of_reach;
-      if (d > r || d >= nearest) return true;
+      const double d = distance(p, q);
+      if (d > of_reach || d >= nearest) return true;
       if (d > floor && !faces_wall(later_, v, earlier_.normals[t], p - q)) return true;
       nearest = d;
       at = q;
-      bound = r;
       return true;
     });
-    if (!(nearest <= bound)) return;
+    if (nearest > of_reach) return;
     // Up to rounding what is nearest, whatever the edges.
     const double here = nearest * (1 + 1e-9);
     std::array<double, 2> least{TriangleTree::kFar, TriangleTree::kFar};
     std::array<Vec3, 2> target;
     const auto offer = [&](std::size_t kind, Vec3 q, double edge) {
       const double d = distance(p, q);
-      if (d > std::max({here, floor, std::min(bound, kOfEdge * std::min(edge, lengths_.at(v)))})) return;
+      if (d > std::max({here, floor, std::min(of_reach, kOfEdge * std::min(edge, lengths_.at(v)))})) return;
       if (d >= least[kind]) return;
       least[kind] = d;
       target[kind] = q;
     };
-    tree.for_each_box_near(grown({p, p}, bound), [&](std::uint32_t t, const TriangleCorners&) {
+    tree.for_each_box_near(grown({p, p}, of_reach), [&](std::uint32_t t, const TriangleCorners&) {
       if (reach(earlier_.faces[t]) != of_reach) return true;
       for (int i = 0; i < 3; ++i) {
         const Triangle& corners = earlier_.triangles[t];
@@ -263,7 +251,7 @@ class BodyMeeting {
     for (const auto& [v, around] : of.around) {
       if (on.around.contains(v)) continue;
       double most = misfits_.floor();
-      if (bends && (what_ == Closes::kWalls || of.sharp_vertices.contains(v)))
+      if (bends)
         for (const std::uint32_t t : around) most = std::max(most, kBend * reach(of.faces[t]));
       put_vertex_on(v, most, tree, of, on, inside, bends);
     }
@@ -339,9 +327,6 @@ class BodyMeeting {
         if (!meeting) continue;
         const Vec3 way = meeting->at - meeting->other;
         if (length(way) > most) continue;
-        if (length(way) > misfits_.floor() && what_ == Closes::kRims && !earlier_.sharp.contains(e) &&
-            !later_.sharp.contains(f))
-          continue;
         if (length(way) > misfits_.floor() && !is_end(f) &&
             !face_each_other(later_.normals[s], earlier_.normals[t], way))
           continue;
@@ -510,7 +495,6 @@ class BodyMeeting {
   std::uint32_t body_;
   const Misfits& misfits_;
   const Lengths& lengths_;
-  Closes what_;
   const RunContext& context_;
   double most_ = 0;
   std::vector<Edge> kept_edges_;  ///< of earlier bodies, sorted
@@ -522,8 +506,8 @@ class BodyMeeting {
 /// One body after the other comes to those that are together already.
 class Closing {
  public:
-  Closing(const BodySoup& soup, const Misfits& misfits, Closes what, const RunContext& context)
-      : soup_(soup), misfits_(misfits), what_(what), context_(context), lengths_(closed_.points) {
+  Closing(const BodySoup& soup, const Misfits& misfits, const RunContext& context)
+      : soup_(soup), misfits_(misfits), context_(context), lengths_(closed_.points) {
     closed_.points = soup.points;
   }
 
@@ -564,7 +548,7 @@ class Closing {
       together_[b] = std::move(body);
       return;
     }
-    BodyMeeting meeting(closed_.points, std::move(near), std::move(body), misfits_, lengths_, what_, context_);
+    BodyMeeting meeting(closed_.points, std::move(near), std::move(body), misfits_, lengths_, context_);
     meeting.run();
     for (const std::vector<BodyFace>* divided : {&meeting.divided_earlier, &meeting.divided_later})
       for (const BodyFace& f : *divided) {
@@ -582,7 +566,6 @@ class Closing {
 
   const BodySoup& soup_;
   const Misfits& misfits_;
-  Closes what_;
   const RunContext& context_;
   ClosedGaps closed_;
   Lengths lengths_;
@@ -592,8 +575,8 @@ class Closing {
 
 }  // namespace
 
-ClosedGaps close_gaps(const BodySoup& soup, const Misfits& misfits, Closes what, const RunContext& context) {
-  if (misfits.floor() > 0) return Closing(soup, misfits, what, context).result();
+ClosedGaps close_gaps(const BodySoup& soup, const Misfits& misfits, const RunContext& context) {
+  if (misfits.floor() > 0) return Closing(soup, misfits, context).result();
   ClosedGaps same{soup.points, soup.triangles, {}, 0, 0};
   same.source.resize(soup.triangles.size());
   std::iota(same.source.begin(), same.source.end(), 0);

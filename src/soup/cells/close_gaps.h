@@ -20,13 +20,9 @@ struct ClosedGaps {
   double largest_move = 0;
 };
 
-/// What comes together: all of the walls, or only where they end, at sharp edges: then what is between the walls is
-/// left to cells.
-enum class Closes { kWalls, kRims };
-
 /// Brings walls of bodies together that are nearer than their misfit: vertices of later bodies move onto vertices,
 /// edges and faces of earlier ones, which stay where they are, and faces of each get the vertices and edges of the
 /// other that lie on them. What is left between is cells thinner than the misfit. Without any nothing changes.
-ClosedGaps close_gaps(const BodySoup& soup, const Misfits& misfits, Closes what, const RunContext& context);
+ClosedGaps close_gaps(const BodySoup& soup, const Misfits& misfits, const RunContext& context);
 
 }  // namespace octafront::cells

@@ -28,13 +28,10 @@ constexpr double kCurved = 0.4226;
 /// Elements of a mesh whose sizes nobody chose, about.
 constexpr double kUsualElements = 30'000;
 
-}  // namespace
-
+/// Whether facets side by side may be of one curved wall: the edge between is not sharp.
 bool is_curved(Vec3 n, Vec3 m) {
   return dot(n, m) >= kCurved;
 }
-
-namespace {
 
 /// One body, as its neighbours meet it.
 struct BodyWall {

@@ -41,9 +41,6 @@ struct MisfitLimits {
 MisfitLimits limits_for(std::optional<double> tolerance, const ElementsToCome& elements, double volume);
 MisfitLimits limits_for(const ComplexOptions& options, const ElementsToCome& elements, const std::vector<Body>& bodies);
 
-/// Whether facets with normals n and m, side by side, may be of one curved wall: the edge between is not sharp.
-bool is_curved(Vec3 n, Vec3 m);
-
 /// Whether walls with normals n and m, nearest to each other along `way`, may be one wall: nearly parallel, and apart
 /// across them rather than along.
 bool face_each_other(Vec3 n, Vec3 m, Vec3 way);
