@@ -249,6 +249,7 @@ Complex complex_of_periodic_values(const Image& image, const PeriodicSurfaces& s
   bodies.insert(bodies.begin(), box_body(kEmptyName, cell.box));
   ComplexOptions options;
   options.within_first = true;
+  options.tolerance = 0;  // what came of one image fits as it is
   Complex cut = join_bodies(bodies, options, context);
   name_regions(whole.surface, cut);
   cut.notes = std::move(whole.notes);

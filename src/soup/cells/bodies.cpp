@@ -420,7 +420,7 @@ struct Joining {
 };
 
 /// The bodies as one complex, and how well their walls have come together.
-struct Way {
+struct JoinedWay {
   Joined joined;
   std::uint64_t crossings = 0;
   double shortest = HUGE_VAL;  ///< edge
@@ -434,7 +434,7 @@ double shortest_edge(const SurfaceMesh& surface) {
 }
 
 /// Walls that are `near` come together; what lies between others that belong together is given away as slivers.
-Way joined_by(const Misfits& near, const Joining& joining) {
+JoinedWay joined_by(const Misfits& near, const Joining& joining) {
   using Overlap = ComplexOptions::Overlap;
   const auto& [bodies, options, all, misfits, context] = joining;
   const ClosedGaps closed = close_gaps({all.points, all.triangles, all.body}, near, context);
@@ -497,14 +497,14 @@ Way joined_by(const Misfits& near, const Joining& joining) {
 
 /// Walls of fine facets are best brought together whole. Coarse ones may cross in vain then, and are better left where
 /// they are.
-Way best_way(const Joining& joining) {
+JoinedWay best_way(const Joining& joining) {
   const Misfits& misfits = joining.misfits;
   if (misfits.largest() <= misfits.floor()) return joined_by(misfits, joining);
-  std::optional<Way> together;
+  std::optional<JoinedWay> together;
   try {
     together = joined_by(misfits, joining);
     if (together->crossings == 0) return std::move(*together);
-    Way apart = joined_by(misfits.without_contacts(), joining);
+    JoinedWay apart = joined_by(misfits.without_contacts(), joining);
     return apart.shortest > together->shortest ? std::move(apart) : std::move(*together);
   } catch (const InputError&) {
     if (together) return std::move(*together);
@@ -522,7 +522,7 @@ Joined joined_bodies(const std::vector<Body>& bodies, const ComplexOptions& opti
   Complex before;
   const Together all = put_together(bodies, before, context);
   const Misfits misfits({all.points, all.triangles, all.body}, limits_for(options, elements, bodies), context);
-  Way best = best_way({bodies, options, all, misfits, context});
+  JoinedWay best = best_way({bodies, options, all, misfits, context});
   std::vector<std::string>& notes = best.joined.complex.notes;
   notes.insert(notes.begin(), before.notes.begin(), before.notes.end());
   return std::move(best.joined);

@@ -125,8 +125,7 @@ TEST(OpenFormula, IsMeshedWithItsNodesOnTheSurface) {
   EXPECT_LT(off, on / 100);
 }
 
-// Fails since thin bodies and volumes are kept: a triangle of x_min at (0, 1, 0) has no copy.
-TEST(OpenFormula, DISABLED_OnePeriodOfEachNamedSurfaceMeshesPeriodically) {
+TEST(OpenFormula, OnePeriodOfEachNamedSurfaceMeshesPeriodically) {
   IntakeOptions options;
   options.formula.resolution = 24;
   options.repeat = "xyz";
