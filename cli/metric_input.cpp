@@ -29,7 +29,7 @@ MetricMesh metric_from_field(const Session& session, const TetMesh& mesh) {
   metrics::FromField from;
   from.elements = static_cast<double>(a.options.size.elements.value_or(0));
   from.norm = a.norm;
-  if (was_typed(a, "gradation")) from.gradation = a.options.size.gradation;
+  from.gradation = a.options.size.gradation.value_or(from.gradation);
   from.bounds = bounds_of(a.options);
   const std::vector<double> values = read_point_values(a.input.string(), a.field, mesh, session.context());
   return {mesh.points, mesh.tets, {}, metrics::of_field(mesh, values, from, session.context()), a.field};
@@ -41,14 +41,14 @@ MetricMesh metric_from_file(const Session& session) {
   MetricMesh metric = read_metric(a.metric, a.input.string(), session.context());
   const metrics::Bounds bounds = bounds_of(a.options);
   const bool is_bounded = a.options.size.min_size || a.options.size.max_size;
-  const bool needs_mesh = was_typed(a, "gradation") || a.options.size.elements;
+  const bool needs_mesh = a.options.size.gradation || a.options.size.elements;
   if (needs_mesh && metric.tets.empty())
     throw OptionError("--gradation and --elements of a metric need a mesh of tetrahedra that it stands on");
   TetMesh ground;
   ground.points = metric.points, ground.tets = metric.tets;
   if (is_bounded) metric.metrics = metrics::bounded(metric.metrics, bounds);
-  if (was_typed(a, "gradation"))
-    metric.metrics = metrics::graded(ground, metric.metrics, a.options.size.gradation, session.context());
+  if (a.options.size.gradation)
+    metric.metrics = metrics::graded(ground, metric.metrics, *a.options.size.gradation, session.context());
   if (a.options.size.elements) {
     const double target = static_cast<double>(*a.options.size.elements) / metrics::kElementsPerComplexity;
     metric.metrics = metrics::with_complexity(ground, metric.metrics, target, bounds);

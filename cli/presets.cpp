@@ -8,7 +8,7 @@ namespace {
 
 /// What a preset is made of.
 struct Choices {
-  double automatic_factor;  ///< a quarter of the elements, or four times as many
+  double automatic_factor;  ///< a quarter of the elements, or eight times as many
   ImproveOptions::Level level;
 };
 
@@ -17,7 +17,7 @@ Choices choices_of(Preset preset) {
     case Preset::kDraft:
       return {1.6, ImproveOptions::Level::kFast};
     case Preset::kFine:
-      return {0.63, ImproveOptions::Level::kBest};
+      return {0.5, ImproveOptions::Level::kBest};
     default:
       return {1, ImproveOptions::Level::kDefault};
   }

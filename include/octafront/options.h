@@ -62,6 +62,9 @@ struct SizeMesh {
   std::string name;                   ///< for messages: the file and its field
 };
 
+/// How fast sizes change where nobody says otherwise.
+inline constexpr double kDefaultGradation = 0.12;
+
 /// Where element sizes come from. Every source is optional; the smallest size wins. With none the size is automatic
 /// (make_size_field); `size`, `point_sizes`, `mesh` and `callback` switch that off: they decide alone, up to limits,
 /// gradation.
@@ -82,7 +85,10 @@ struct SizeOptions {
   /// The automatic sizes times this: 0.5 makes about eight times as many elements. Has no say where another source
   /// chooses the sizes. In [0.1, 10].
   double automatic_factor = 1;
-  double gradation = 0.12;  ///< |h(x) - h(y)| <= gradation |x - y|; in [0.01, 1]
+  /// |h(x) - h(y)| <= gradation |x - y|; in [0.01, 1]. Without a value it follows from how sizes are spread: the least
+  /// from kDefaultGradation to .4 that leaves at most 30 % of the elements where sizes only rise from smaller ones. Of
+  /// kept surfaces it is kDefaultGradation.
+  std::optional<double> gradation;
   enum class Interior { kUniform, kGraded };
   /// kUniform: sizes inside stay at most the largest size on the surface (the paper's Cmax).
   /// kGraded: sizes grow inward at the gradation, up to max_size.

@@ -178,7 +178,7 @@ void read_sizes_into(SizeOptions& options, const std::string& named, const RunCo
   } else if (has_field) {
     asked.fail("is a background grid, which is given without the name of a field");
   } else {
-    options.field = read_size_field(asked.name, options.gradation, context);
+    options.field = read_size_field(asked.name, options.gradation.value_or(kDefaultGradation), context);
   }
 }
 

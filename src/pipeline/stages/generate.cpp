@@ -87,10 +87,11 @@ void improve_or_read(const Prepared& input, Filled& filled, Run& run) {
 }
 
 /// Whether what follows improvement looks at elements of all ranks together.
-bool wants_all(const Domain& domain, const Options& options, const Fins* fins) {
+bool wants_all(const Domain& domain, const Prepared& input, const Filled& filled, const Run& run, const Fins* fins) {
+  const Options& options = run.options;
   return domain.geometry || !domain.true_volumes.empty() || !domain.sets.empty() || fins != nullptr ||
          options.order > 1 || options.improve.no_bridging || options.volume.shell != 0 || !options.split.empty() ||
-         options.surface.keep_volumes || requires_something(options.require);
+         options.surface.keep_volumes || requires_something(options.require) || owes_volume(input, filled.boundary, run);
 }
 
 /// `fins`: of the domain's lines and points, which it has as sheets; null: it has none.
@@ -113,7 +114,7 @@ Result generate_once(const Domain& domain, const Options& asked, const RunContex
   agree_on(filled, "mesh as it was filled", context);
   improve_or_read(input, filled, run);
   agree_on(filled, "improved mesh", context);
-  if (wants_all(domain, options, fins)) make_whole(filled, run);
+  if (wants_all(domain, input, filled, run, fins)) make_whole(filled, run);
   if (!options.layers.outside) add_layers(input, filled, run);
   note_missed_elements(filled, run);
   layer_walls(filled, run);

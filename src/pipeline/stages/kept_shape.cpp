@@ -24,11 +24,11 @@ namespace {
 /// but to no less than this part of themselves, so often.
 constexpr double kAim = 0.5, kLeastScale = 0.4;
 constexpr int kTries = 2;
-/// Up to here a slender body gets its volume back by moves of vertices, of a tenth of their edges or so: smaller
-/// elements would be many times as many.
+/// Up to here a body gets its volume back by moves of vertices, of a tenth of their edges or so: smaller elements would
+/// be many times as many.
 constexpr double kGivenBack = 0.1;
-/// Predictions of so many bounds are believed, without a surface that would be made in vain.
-constexpr double kHopeless = 3;
+/// Up to here the finished mesh gets it back, on a boundary that improvement may move.
+constexpr double kOwed = 0.05;
 /// Vertices that leave the surface, and chords between them, lie within so many bounds on deviation.
 constexpr double kStray = 2;
 
@@ -48,7 +48,7 @@ double change_of_extent(const Box3& made, const Box3& input) {
 bool is_hopeless(const Prepared& input, const SizeField& sizes, double budget, const Stage& stage) {
   if (!std::isfinite(budget)) return false;
   const double loss = predicted_volume_loss(input.surface, sizes, stage.context());
-  if (loss <= kHopeless * kVolumeKept) return false;
+  if (loss <= kGivenBack) return false;
   const SizeField smaller = scaled(sizes, std::sqrt(kVolumeKept / loss), stage.context());
   if (expected_tets(smaller, input.surface.mesh()) <= budget) return false;
   stage.note(
@@ -56,7 +56,7 @@ bool is_hopeless(const Prepared& input, const SizeField& sizes, double budget, c
   return true;
 }
 
-/// Whether a slender body's surface has the volume again by moves of its vertices; it stays as it is then.
+/// Whether the surface of a slender body has the volume again by moves of its vertices; it stays as it is then.
 bool give_volume_back(Remeshed& made, const Prepared& input, const Run& run, const Stage& stage) {
   const auto change = [&](const SurfaceMesh& surface) {
     return change_of_volume(enclosed_volume(surface), run.report.input_volume);
@@ -81,7 +81,19 @@ Remeshed input_that_stays(const Prepared& input, const SizeField& sizes) {
   return kept;
 }
 
+/// Whether the volume may wait for the mesh: opposite faces of a cell stay copies of each other, and second order
+/// follows the smooth surface.
+bool may_owe_volume(const Prepared& input, const Options& options) {
+  return has_automatic_sizes(options) && options.periodic.empty() && !is_complex(input.surface.mesh()) &&
+         !keeps_surface(options) && !traits_of(options.method).makes_own_boundary();
+}
+
 }  // namespace
+
+bool owes_volume(const Prepared& input, const Remeshed& boundary, const Run& run) {
+  return may_owe_volume(input, run.options) && !input.geometry && !boundary.stays &&
+         is_off(change_of_volume(enclosed_volume(boundary.surface), run.report.input_volume));
+}
 
 double change_of_volume(double made, double input) {
   return made / input - 1;
@@ -93,6 +105,8 @@ Remeshed remeshed_in_shape(const Prepared& input, const SizeField& sizes, const 
   if (is_hopeless(input, sizes, budget, stage)) return input_that_stays(input, sizes);
   Remeshed made = remesh(sizes);
   const auto change = [&] { return change_of_volume(enclosed_volume(made.surface), run.report.input_volume); };
+  // The mesh gets it back, or chords of true geometry are said.
+  if (std::abs(change()) <= kOwed && may_owe_volume(input, run.options)) return made;
   if (is_off(change()) && give_volume_back(made, input, run, stage)) return made;
   double scale = 1;
   for (int k = 0; k < kTries && is_off(change()); ++k) {
@@ -130,7 +144,7 @@ void check_shape(const Prepared& input, const Filled& filled, Run& run) {
   const SurfaceMesh &before = input.surface.mesh(), &after = filled.boundary.surface;
   if (is_complex(before) || !has_automatic_sizes(run.options)) return;
   const double change = change_of_volume(enclosed_volume(after), run.report.input_volume);
-  if (is_off(change))
+  if (std::abs(change) > kGivenBack)
     throw MeshingError(
         fmt::format("the mesh has {:.4g} % of the input's volume. Give a size, or keep the surface's own "
                     "triangles by `keep`",

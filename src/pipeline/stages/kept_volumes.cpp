@@ -178,7 +178,7 @@ void keep_mesh_volumes(const Prepared& input, const std::vector<double>& wanted,
   // Elements of second order follow the smooth surface, which has the volume.
   const bool is_other = filled.layers || options.order > 1 || keeps_surface(options) ||
                         traits_of(options.method).makes_own_boundary() || wanted.empty() || !options.periodic.empty();
-  if (!options.surface.keep_volumes || is_other) return;
+  if ((!options.surface.keep_volumes && !owes_volume(input, filled.boundary, run)) || is_other) return;
   run.stage("volumes", [&](const Stage& stage) {
     SurfaceMesh& surface = filled.boundary.surface;
     ElementsBeside beside(filled.mesh, surface);

@@ -346,7 +346,9 @@ Prepared prepare_aperiodic(const Domain& domain, Run& run) {
 SurfaceOptions true_to_input(const SurfaceMesh& input, const Options& options) {
   SurfaceOptions surface = options.surface;
   if (!surface.max_deviation && has_automatic_sizes(options)) {
-    const double automatic = kAutomaticDeviation * bounding_box(input.points).diagonal();
+    // Who asks for coarser elements has chords that lie farther off.
+    const double coarser = std::max(1.0, options.size.automatic_factor);
+    const double automatic = coarser * kAutomaticDeviation * bounding_box(input.points).diagonal();
     surface.max_deviation = std::min(automatic, asked_deviation(options).value_or(automatic));
   }
   return surface;

@@ -69,7 +69,7 @@ std::string packed_sizes(const SizeField& sizes) {
     for (const Corners& h : grid->h) append(bytes, h);
     return bytes;
   }
-  if (sizes.min_size() != sizes.max_size() || head.gradation != SizeOptions{}.gradation)
+  if (sizes.min_size() != sizes.max_size() || head.gradation != kDefaultGradation)
     throw OptionError("these sizes are those of a function: they have no grid that could be copied elsewhere");
   head.side = sizes.min_size();
   append(bytes, head);

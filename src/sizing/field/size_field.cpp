@@ -35,7 +35,7 @@ SizeField SizeField::uniform(double h) {
 }
 
 SizeField SizeField::from_function(std::function<double(Vec3)> h, double lo, double hi) {
-  return SizeFunction::field(std::move(h), lo, hi, SizeOptions{}.gradation);
+  return SizeFunction::field(std::move(h), lo, hi, kDefaultGradation);
 }
 
 SizeField SizeFunction::field(std::function<double(Vec3)> h, double lo, double hi, double gradation) {

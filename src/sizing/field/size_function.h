@@ -25,7 +25,7 @@ class SizeFunction {
   virtual double max_size() const = 0;
 
   /// The rate at which sizes may change, and caps on the field grow. One that knows of none has the default.
-  double gradation = SizeOptions{}.gradation;
+  double gradation = kDefaultGradation;
 
   static SizeField field(std::shared_ptr<const SizeFunction> function) {
     const SizeFunction& f = *function;

@@ -30,7 +30,7 @@ void require_affordable(const std::string& what, double tets, const char* advice
 }
 
 Affordable::Affordable(const SurfaceMesh& surface, const SizeOptions& options)
-    : gradation_(options.gradation), least_(options.min_size.value_or(0)) {
+    : gradation_(options.gradation.value_or(kDefaultGradation)), least_(options.min_size.value_or(0)) {
   area_.reserve(surface.triangles.size());
   for (const Triangle& t : surface.triangles) {
     area_.push_back(triangle_area(surface.points, t));

@@ -22,13 +22,13 @@ namespace octafront {
 namespace {
 
 /// Some ten seconds of work, and more than most models need.
-constexpr double kBudget = 1e6, kBudgetPerTriangle = 20, kMostBudget = 3e6;
+constexpr double kBudget = 3e5, kBudgetPerTriangle = 5, kMostBudget = 1.5e6;
 /// Of these what details get before the surface is made. The surface takes the rest for what it has to follow: strips
 /// between lines, and places where it would stray.
-constexpr double kForDetails = 400'000;
+constexpr double kForDetails = 200'000;
 /// A body that is thinner than its base size by and large, as plates, stars, combs and wires are, gets so many times
 /// what the base size alone comes to, and this much in any case: its gaps and bends ask for very many.
-constexpr double kTimesBase = 4, kLeastForDetails = 50'000;
+constexpr double kTimesBase = 4, kLeastForDetails = 100'000;
 /// For details small sizes are raised by this factor at most: real details, such as a thousand small holes, would
 /// be lost.
 constexpr double kMostSmallRaised = 2.7;
@@ -47,9 +47,15 @@ double forced_by_largest(const SurfaceMesh& surface, const SizeOptions& options)
   return kTetsPerCube * std::abs(enclosed_volume(surface)) / (h * h * h) + kTetsPerSquare * area(surface) / (h * h);
 }
 
-/// A budget of the usual size, as the user's own factor changes it.
+/// A budget of the usual size, as the user's own factor changes it. What is coarse is cheap: it need not be held so far
+/// down that the surface could not be made.
+double with_factor(double budget, const SizeOptions& options) {
+  constexpr double kLeast = 50'000;
+  return std::max(budget / elementary::pow(options.automatic_factor, 3), std::min(budget, kLeast));
+}
+
 double with_choices(double budget, const SurfaceMesh& surface, const SizeOptions& options) {
-  return budget / elementary::pow(options.automatic_factor, 3) + forced_by_largest(surface, options);
+  return with_factor(budget, options) + forced_by_largest(surface, options);
 }
 
 /// What details get, in proportion to the shape.
@@ -103,7 +109,7 @@ double automatic_budget(const SurfaceMesh& surface, const SizeOptions& options) 
 }
 
 double most_automatic_budget(const SizeOptions& options) {
-  return has_no_size_source(options) ? kMostBudget / elementary::pow(options.automatic_factor, 3) : HUGE_VAL;
+  return has_no_size_source(options) ? with_factor(kMostBudget, options) : HUGE_VAL;
 }
 
 SizeField within_budget(const SurfaceMesh& surface, const WantedSizes& wanted, const SizeOptions& options,

@@ -10,6 +10,7 @@
 #include "sizing/search/budget.h"
 #include "sizing/search/count_search.h"
 #include "sizing/sources/check_size_options.h"
+#include "sizing/search/spread.h"
 #include "sizing/sources/source_grid.h"
 
 #include <algorithm>
@@ -89,7 +90,7 @@ SizeField scaled_to_count(const SurfaceMesh& surface, const WantedSizes& wanted,
   std::optional<TetPrediction> prediction;
   std::optional<SizeField> first_look;
   parallel_invoke([&] { prediction.emplace(surface); },
-                  [&] { first_look = source_grid(surface, wanted, options, stage.context(), kFirstLook); });
+                  [&] { first_look = source_grid(surface, wanted, options, stage.context(), {kFirstLook}); });
   const TetPrediction& expected = *prediction;
   const double more = elementary::log(wanted_count) - elementary::log(expected(*first_look));
   CountSearch search(wanted_count, more / slope_of_sources(*first_look, more, expected, options));
@@ -131,10 +132,11 @@ void refuse_huge_counts(const SurfaceMesh& surface, const WantedSizes& wanted) {
 
 }  // namespace
 
-SizeField make_size_field(const KnownSurface& known, const SizeOptions& options, const Stage& stage,
+SizeField make_size_field(const KnownSurface& known, const SizeOptions& given, const Stage& stage,
                           const FaceRules& rules, double budget) {
   const SurfaceMesh& surface = known.mesh();
-  check_size_options(options);
+  check_size_options(given);
+  SizeOptions options = given;
   if (surface.triangles.empty()) throw InputError("the surface has no triangles: there is nothing to choose sizes for");
   if (options.field) return *options.field;
   WantedSizes wanted = wanted_sizes(known, options, stage, rules);
@@ -142,6 +144,7 @@ SizeField make_size_field(const KnownSurface& known, const SizeOptions& options,
   const double factor = wanted.automatic && !options.elements ? options.automatic_factor : 1;
   if (factor != 1) wanted = scaled(wanted, factor, options);
   if (!options.elements) refuse_huge_counts(surface, wanted);
+  if (!options.gradation) options.gradation = gradation_by_spread(surface, wanted, options, stage.context());
   SizeField field = options.elements   ? scaled_to_count(surface, wanted, options, stage)
                     : wanted.automatic ? within_budget(surface, wanted, options, budget, stage)
                                        : source_grid(surface, wanted, options, stage.context());
@@ -149,6 +152,7 @@ SizeField make_size_field(const KnownSurface& known, const SizeOptions& options,
   const OctreeField& grid = *as_octree_field(field);
   stage.count("leaves", static_cast<double>(grid.tree.size()));
   stage.count("levels", grid.tree.depth());
+  stage.count("gradation", *options.gradation);
   stage.count("smallest size", field.min_size());
   stage.count("largest size", field.max_size());
   return field;

@@ -175,8 +175,9 @@ void check_size_options(const SizeOptions& o) {
                     "below",
                     r.lo.x, r.lo.y, r.lo.z, r.size, r.radius));
   }
-  require(o.gradation >= 0.01 && o.gradation <= 1,
-          fmt::format("`gradation` is {}: it must lie between 0.01 (slow growth) and 1 (fast)", o.gradation));
+  const double gradation = o.gradation.value_or(kDefaultGradation);
+  require(gradation >= 0.01 && gradation <= 1,
+          fmt::format("`gradation` is {}: it must lie between 0.01 (slow growth) and 1 (fast)", gradation));
 }
 
 void note_misplaced_sizes(const SurfaceMesh& surface, const SizeOptions& options, const Stage& stage) {

@@ -143,7 +143,7 @@ SizeField size_field_of_surface(const KnownSurface& known, const SizeOptions& op
     rules.gradation *= kSteeper;
     shortfall = shortfall_at(rules.gradation);
   }
-  if (rules.gradation > options.gradation) {
+  if (rules.gradation > options.gradation.value_or(kDefaultGradation)) {
     stage.note(fmt::format(
         "the kept triangles change in size faster than gradation allows: sizes change by up to {:.3g} per unit of "
         "length",

@@ -12,7 +12,7 @@ namespace octafront {
 
 namespace {
 
-constexpr double kExtentPerSize = 30;
+constexpr double kExtentPerSize = 20;
 
 }  // namespace
 

@@ -44,7 +44,7 @@ std::vector<SizeCap> caps_of_regions(const SizeOptions& options, const RootCube&
 
 GridRules grid_rules(const SizeOptions& options, double ceiling) {
   GridRules rules;
-  rules.gradation = options.gradation;
+  rules.gradation = options.gradation.value_or(kDefaultGradation);
   rules.interior_below_surface = options.interior == SizeOptions::Interior::kUniform;
   rules.resolve_surface = !rules.interior_below_surface;
   rules.ceiling = ceiling;
@@ -59,10 +59,11 @@ std::shared_ptr<OctreeField> with_regions(std::shared_ptr<OctreeField> grid, con
 }
 
 SizeField source_grid(const SurfaceMesh& surface, const WantedSizes& wanted, const SizeOptions& options,
-                      const RunContext& context, double coarser) {
+                      const RunContext& context, const GridLook& look) {
   const RootCube root = root_around(surface);
   GridRules rules = grid_rules(options, wanted.ceiling);
-  rules.leaf_per_size *= coarser;
+  rules.leaf_per_size *= look.coarser;
+  rules.keep_sources = rules.keep_sources || look.keeps_sources;
   std::vector<SizeSample> samples = wanted.even && !rules.resolve_surface
                                         ? even_samples(surface, wanted.face.front(), root, context)
                                         : sample_surface(surface, wanted.face, wanted.at_place, context);

@@ -21,9 +21,15 @@ GridRules grid_rules(const SizeOptions& options, double ceiling);
 std::shared_ptr<OctreeField> with_regions(std::shared_ptr<OctreeField> grid, const SizeOptions& options,
                                           const RunContext& context);
 
-/// The sizes wanted on a surface and those of options.regions, in a background grid. `coarser`: leaves are so many
-/// times larger than they are to be.
+/// For a look at what sizes come to: leaves are so many times larger than they are to be, and OctreeField::source stays.
+struct GridLook {
+  double coarser = 1;
+  bool keeps_sources = false;
+};
+
+/// The sizes wanted on a surface and those of options.regions, in a background grid. With options.elements
+/// OctreeField::source stays.
 SizeField source_grid(const SurfaceMesh& surface, const WantedSizes& wanted, const SizeOptions& options,
-                      const RunContext& context, double coarser = 1);
+                      const RunContext& context, const GridLook& look = {});
 
 }  // namespace octafront

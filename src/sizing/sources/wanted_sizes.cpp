@@ -24,21 +24,20 @@ namespace octafront {
 
 namespace {
 
-/// The automatic choice. Curvature of 20 elements per turn keeps chords within 1.6 % of the radius of curvature.
-constexpr double kAutomaticCurvature = 20;
+/// The automatic choice. Curvature of 12 elements per turn keeps chords within 3.4 % of the radius of curvature.
+constexpr double kAutomaticCurvature = 12;
 constexpr double kAutomaticFeatureElements = 1;
 constexpr double kAutomaticGap = 1;
 /// Sources that follow details stop at this part of the base size unless min_size says otherwise: a spike or a crease
 /// of noise must not ask for elements without bound.
 constexpr double kAutomaticFloor = 1.0 / 5;
-constexpr double kAutomaticGapFloor = 1.0 / 12;
 constexpr double kChosenFloor = 1.0 / 200;
 /// Chords cut corners: the automatic choice is scaled until the volume lost so, as predicted, is below this part.
-constexpr double kVolumeLoss = 0.003;
+constexpr double kVolumeLoss = 0.01;
 constexpr double kLeastAutomaticScale = 0.3;
 /// Slender bodies would have ever more elements for the same part: it is this much more for each unit of slenderness,
 /// to a part at most that 13 elements a turn keep. They get their volume back when the surface is made.
-constexpr double kLossPerSlenderness = kVolumeLoss / 12, kMostVolumeLoss = 0.03, kLeastScaleOfSlender = 0.02;
+constexpr double kLossPerSlenderness = 0.00025, kMostVolumeLoss = 0.03, kLeastScaleOfSlender = 0.02;
 /// Of a given size what is asked for where the body is round and thinner.
 constexpr double kRoundFloor = 1.0 / 32;
 
@@ -83,7 +82,7 @@ Choice choose(const SurfaceMesh& surface, const SizeOptions& o, const FaceRules&
   const double usual = o.callback && !o.size ? std::min(c.base, ours) : c.base;
   c.chosen_floor = o.min_size.value_or(usual * kChosenFloor);
   c.floor = c.automatic ? o.min_size.value_or(usual * kAutomaticFloor) : c.chosen_floor;
-  c.gap_floor = o.min_size.value_or(usual * (c.automatic ? kAutomaticGapFloor : kChosenFloor));
+  c.gap_floor = o.min_size.value_or(usual * (c.automatic ? kAutomaticFloor : kChosenFloor));
   c.gap = o.gap.value_or(c.automatic ? kAutomaticGap : 0);
   const bool turns = o.size && !o.curvature && rules.turns > 0;
   c.curvature = o.curvature.value_or(c.automatic ? kAutomaticCurvature : turns ? rules.turns : 0);
