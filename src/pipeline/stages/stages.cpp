@@ -110,6 +110,9 @@ double budget_of(const SurfaceMesh& surface, const Options& options) {
 // Where sizes are given, detail is what is smaller than this part of them.
 constexpr double kDetail = 0.1;
 
+// Of no gradation that the user chose: strips between lines are narrow places that little else is near.
+constexpr double kRiseFromStrips = 0.3;
+
 // Of true geometry a size that is given follows curvature by so many elements a turn, as is usual with CAD.
 constexpr double kTurnsOfGeometry = 12;
 
@@ -400,7 +403,7 @@ Remeshed triangulate(const Prepared& input, const SizeField& sizes, Run& run) {
       const double budget = budget_of(input.surface.mesh(), run.options);
       const SizeOptions& size = run.options.size;
       const FrontLimits limits{slack, budget, size.min_size.value_or(0),
-                               size.size && input.geometry ? kLeastOfGiven : 0};
+                               size.size && input.geometry ? kLeastOfGiven : 0, size.gradation ? 0 : kRiseFromStrips};
       Remeshed remeshed = remeshed_in_shape(
           input, sizes, run, stage,
           [&](const SizeField& by) {

@@ -7,6 +7,7 @@
 #include "improve/curved/curved.h"
 #include "pipeline/stages/kept_shape.h"
 #include "pipeline/stages/layered.h"
+#include "pipeline/stages/methods.h"
 
 #include <algorithm>
 #include <cmath>
@@ -20,6 +21,8 @@ namespace {
 
 /// Chords are made curves by parabolas, which miss this part of what coarse ones cut off.
 constexpr double kMissedByParabolas = 0.25;
+/// A part that has lost so much, or has so much more, is another one.
+constexpr double kFarOff = 0.1;
 /// Chords that lie this part of a region's volume over its area deep cut off well below a percent of it.
 constexpr double kDepthOfThickness = 0.025;
 /// What chords cut off falls with the bound: it is made smaller to come to this part of what may be lost, but to no
@@ -95,11 +98,12 @@ void refuse_lost_volumes(const Domain& domain, const Filled& filled, Run& run) {
     changes.push_back(change_of_volume(made[r] + of_layers[r], domain.true_volumes[r]));
   if (std::ranges::all_of(changes, [](double c) { return std::abs(c) <= kVolumeKept; })) return;
   const std::vector<double> cut = volumes_cut_off(filled.mesh, *domain.geometry);
+  // What sizes cost that the user chose is said; what nobody would take for the part is refused.
+  const double most = has_automatic_sizes(run.options) ? kVolumeKept : kFarOff;
   std::vector<OffRegion> lost;
   for (std::uint32_t r = 0; r < changes.size(); ++r) {
     const double left = changes[r] + cut[r] / domain.true_volumes[r];
-    if (!(std::abs(left) <= std::max(kVolumeKept, kMissedByParabolas * std::abs(changes[r]))))
-      lost.push_back({r, left});
+    if (!(std::abs(left) <= std::max(most, kMissedByParabolas * std::abs(changes[r])))) lost.push_back({r, left});
   }
   if (lost.empty()) return;
   throw MeshingError(fmt::format(

@@ -36,14 +36,14 @@ class Affordable {
   double tets_on_faces(const SizeOfFace& size) const;
   /// The same from some thousand places, spread evenly over the surface, for sizes that take long to find.
   double tets_at_places(const SizeOfFace& size) const;
+  /// Elements behind a part of the surface, of this area, that asks for size h.
+  double tets_behind(double area, double h) const;
   /// Elements around a curve that asks for size h.
   double tets_around(double length, double h) const;
   /// Throws OptionError, with the number, if `tets` are more than a mesh can hold: wish `wish` was given as `value`.
   void require(const char* wish, double value, double tets) const;
 
  private:
-  double tets_behind(double area, double h) const;
-
   std::vector<double> area_;
   double all_area_ = 0, depth_ = 0, gradation_, least_;
 };

@@ -28,7 +28,7 @@ constexpr double kBudget = 3e5, kBudgetPerTriangle = 5, kMostBudget = 1.5e6;
 constexpr double kForDetails = 200'000;
 /// A body that is thinner than its base size by and large, as plates, stars, combs and wires are, gets so many times
 /// what the base size alone comes to, and this much in any case: its gaps and bends ask for very many.
-constexpr double kTimesBase = 4, kLeastForDetails = 100'000;
+constexpr double kTimesBase = 4, kLeastForDetails = 50'000;
 /// For details small sizes are raised by this factor at most: real details, such as a thousand small holes, would
 /// be lost.
 constexpr double kMostSmallRaised = 2.7;

@@ -4,6 +4,7 @@
 
 #include "base/core/parallel.h"
 #include "base/geometry/measures.h"
+#include "sizing/prediction/affordable.h"
 
 #include <algorithm>
 #include <cmath>
@@ -44,6 +45,18 @@ constexpr int kMostOnEdge = 32;
 
 int parts_of_edge(double area, double whole) {
   return std::clamp(static_cast<int>(std::ceil(std::sqrt(kLookedAt * area / whole))), 1, kMostOnEdge);
+}
+
+/// Where so much of the elements is made for so little of the surface, it is said.
+constexpr double kBulk = 0.5, kFewPlaces = 0.25;
+
+/// The option that drops what a source asks for, as words that follow.
+std::string advice_on(const std::string& source) {
+  if (source == "`gap`" || source == "`through`" || source == "`curvature`" || source == "`feature_elements`")
+    return fmt::format(": a smaller {}, or `min_size`, saves them", source);
+  if (source == kNearbyName) return ": a larger `gradation`, or `min_size`, saves them";
+  if (source == "thin round places") return ": `min_size` saves them";
+  return "";
 }
 
 std::string percent(double part) {
@@ -124,9 +137,9 @@ std::vector<SourceShares::Asked> SourceShares::least_at_all(const std::vector<Pl
   return asked;
 }
 
-std::vector<double> SourceShares::part_of_each(const SurfaceMesh& surface, const std::vector<double>& face,
-                                               const SizeField& field, const SizeOptions& options,
-                                               double factor) const {
+std::vector<SourceShares::Part> SourceShares::part_of_each(const SurfaceMesh& surface, const std::vector<double>& face,
+                                                           const SizeField& field, const SizeOptions& options,
+                                                           double factor) const {
   const std::vector<Place> places = places_on(surface);
   const std::vector<Asked> asked = least_at_all(places, face);
   std::vector<double> least_of(names_.size(), HUGE_VAL);
@@ -137,41 +150,56 @@ std::vector<double> SourceShares::part_of_each(const SurfaceMesh& surface, const
       if (s != here.source && least_of[s] < here.size) return false;
     return least_of[here.source] <= came_out / kNearby && options.regions.empty();
   };
+  const Affordable affordable(surface, options);
   std::vector<std::uint16_t> by(places.size());
+  std::vector<double> elements(places.size());
   parallel_for(places.size(), [&](std::size_t i) {
     const double came_out = field.at(places[i].on.p) / factor;
+    elements[i] = affordable.tets_behind(places[i].area, came_out);
     // Numbers of elements scale all sizes: then only who asks for the least is known.
     const bool is_lower = !options.elements && came_out < kNearby * asked[i].size && !is_own(asked[i], came_out);
     by[i] = static_cast<std::uint16_t>(is_lower ? names_.size() + is_by_region(options, places[i].on.p, came_out)
                                                 : asked[i].source);
   });
-  std::vector<double> part(names_.size() + 2);
-  for (std::size_t i = 0; i < places.size(); ++i) part[by[i]] += places[i].area;
-  const double whole = area(surface);
-  for (double& p : part) p /= whole;
+  std::vector<Part> part(names_.size() + 2);
+  Part whole;
+  for (std::size_t i = 0; i < places.size(); ++i) {
+    part[by[i]].of_surface += places[i].area, part[by[i]].of_elements += elements[i];
+    whole.of_surface += places[i].area, whole.of_elements += elements[i];
+  }
+  for (Part& p : part) p.of_surface /= whole.of_surface, p.of_elements /= whole.of_elements;
   return part;
 }
 
 void SourceShares::tell(const SurfaceMesh& surface, const std::vector<double>& face, const SizeField& field,
                         const SizeOptions& options, const Stage& stage, double factor) const {
-  const std::vector<double> part = part_of_each(surface, face, field, options, factor);
+  const std::vector<Part> part = part_of_each(surface, face, field, options, factor);
   std::vector<std::string> names = names_;
   names.emplace_back(kNearbyName);
   names.emplace_back("`regions`");
-  std::vector<std::pair<double, std::string>> shares;
+  std::vector<std::pair<Part, std::string>> shares;
   // Who was asked in vain is told too.
   const auto is_asked = [&](std::size_t s) {
     return std::ranges::any_of(places_, [s](const AtPlace& source) { return source.number == s; });
   };
   for (std::size_t s = 0; s < part.size(); ++s)
-    if (part[s] > 0 || is_asked(s)) shares.emplace_back(part[s], names[s]);
-  std::stable_sort(shares.begin(), shares.end(), [](const auto& a, const auto& b) { return a.first > b.first; });
+    if (part[s].of_surface > 0 || is_asked(s)) shares.emplace_back(part[s], names[s]);
+  std::stable_sort(shares.begin(), shares.end(),
+                   [](const auto& a, const auto& b) { return a.first.of_surface > b.first.of_surface; });
   std::string sentence;
   for (const auto& [share, name] : shares) {
-    if (share > 0) stage.count(fmt::format("asked by {}, % of the surface", name), 100 * share);
-    sentence += fmt::format("{}{} over {} %", sentence.empty() ? "" : ", ", name, share > 0 ? percent(share) : "0");
+    if (share.of_surface > 0) {
+      stage.count(fmt::format("asked by {}, % of the surface", name), 100 * share.of_surface);
+      stage.count(fmt::format("made for {}, % of the elements", name), 100 * share.of_elements);
+    }
+    sentence += fmt::format("{}{} over {} %", sentence.empty() ? "" : ", ", name,
+                            share.of_surface > 0 ? percent(share.of_surface) : "0");
   }
   if (given_sources(options) > 1) stage.note("sizes are asked by " + sentence + " of the surface");
+  for (const auto& [share, name] : shares)
+    if (share.of_elements > kBulk && share.of_surface < kFewPlaces)
+      stage.note(fmt::format("{} over {} % of the surface makes about {} % of the elements{}", name,
+                             percent(share.of_surface), percent(share.of_elements), advice_on(name)));
 }
 
 }  // namespace octafront

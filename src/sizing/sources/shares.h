@@ -29,8 +29,10 @@ class SourceShares {
   /// A source that is asked place by place, after all others.
   void add(std::string by, SizeAtPlace at);
 
-  /// Counts "asked by SOURCE, % of the surface", and says so in a sentence where `options` name sources beyond one.
-  /// `face`: the sizes of the last call of changed(), `field`: what came out of all of them, times `factor`.
+  /// Counts "asked by SOURCE, % of the surface" and "made for SOURCE, % of the elements" (about: sizes grow at the
+  /// gradation from where they are asked for), and says so in a sentence where `options` name sources beyond one, and
+  /// in another where few places make most of the elements. `face`: the sizes of the last call of changed(), `field`:
+  /// what came out of all of them, times `factor`.
   void tell(const SurfaceMesh& surface, const std::vector<double>& face, const SizeField& field,
             const SizeOptions& options, const Stage& stage, double factor = 1) const;
 
@@ -51,8 +53,12 @@ class SourceShares {
   Asked least_at(const Place& place, const std::vector<double>& face) const;
   std::vector<Asked> least_at_all(const std::vector<Place>& places, const std::vector<double>& face) const;
   std::uint8_t number_of(const std::string& name);
-  std::vector<double> part_of_each(const SurfaceMesh& surface, const std::vector<double>& face, const SizeField& field,
-                                   const SizeOptions& options, double factor) const;
+  /// What each source asks for, in parts of all.
+  struct Part {
+    double of_surface = 0, of_elements = 0;
+  };
+  std::vector<Part> part_of_each(const SurfaceMesh& surface, const std::vector<double>& face, const SizeField& field,
+                                 const SizeOptions& options, double factor) const;
 
   std::vector<std::string> names_;
   std::vector<double> last_;

@@ -102,6 +102,7 @@ class Remesher {
   StripRules strips() const {
     StripRules rules = kind_.strips();
     rules.floor = std::max(rules.floor, work_.limits.least_part);
+    rules.gradation = std::max(rules.gradation, work_.limits.rise);
     rules.least = work_.limits.least;
     return rules;
   }

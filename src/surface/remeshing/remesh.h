@@ -34,6 +34,8 @@ struct FrontLimits {
   double budget = HUGE_VAL;
   /// Strips and corners ask for no size below this, input units, strips for none below `least_part` of what it was.
   double least = 0, least_part = 0;
+  /// From strips sizes may rise so fast, or as fast as elsewhere if that is faster.
+  double rise = 0;
 };
 
 /// The surface front. Requires a clean surface (see surface_mesh.h). The result is checked: closed, manifold, same

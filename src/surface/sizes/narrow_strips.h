@@ -22,8 +22,7 @@ struct StripRules {
 };
 /// Triangles of 1.5 widths between the lines have 2r/R of .94. (At 2 widths models full of strips lose .01 of their
 /// mean; at 1.2 they gain .005 and have a third more triangles.) The lines differ by 12 degrees at most.
-inline constexpr StripRules kStrips{
-    .size_per_width = 1.5, .parallel = 0.978, .floor = 0.3, .hopeless = 0.08, .gradation = 0.3};
+inline constexpr StripRules kStrips{.size_per_width = 1.5, .parallel = 0.978, .floor = 0.3, .hopeless = 0.08};
 /// Of single surfaces lines that are nearer may merge; of a complex nothing may move, and walls as narrow as one likes
 /// are common: triangles of 2r/R .83 shall do, and 8 degrees.
 inline constexpr StripRules kStripsOfWalls{

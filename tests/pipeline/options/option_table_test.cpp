@@ -75,7 +75,7 @@ TEST(OptionTable, WrongNamesAndValuesAreRefused) {
   refused("sise", 1.0, "there is no option \"sise\"");
   refused("size", std::string("large"), "`size` needs a number");
   refused("size", true, "`size` needs a number");
-  refused("gradation", {}, "`gradation` needs a number");
+  refused("automatic_factor", {}, "`automatic_factor` needs a number");
   refused("elements", 1.5, "`elements` needs a whole number");
   refused("elements", 1e300, "`elements` needs a whole number");
   refused("order", std::int64_t{1} << 40, "`order` is out of range");

@@ -95,7 +95,7 @@ TEST(Stages, BoundsOfAMendedSurfaceFollowItsTriangles) {
   const std::size_t triangles = mended.surface.triangles.size();
   mended.bound.assign(triangles, HUGE_VAL);
   for (std::size_t t = 0; t < triangles; ++t)
-    if (mended.surface.points[mended.surface.triangles[t][0]].z > 0.9) mended.bound[t] = 1.5e-3;
+    if (mended.surface.points[mended.surface.triangles[t][0]].z > 0.9) mended.bound[t] = 3e-3;
   for (std::uint32_t t = 0; t < triangles; ++t) mended.surface.source.push_back(7 * t);
   const Result made = generate(mended);
   EXPECT_GT(static_cast<double>(made.report.tets), 1.02 * loose);

@@ -34,11 +34,13 @@ TEST(SizeField, ObeysItsGradationBetweenAnyTwoPoints) {
     SCOPED_TRACE(c.name);
     const SizeField h = sizes_of(c.surface, c.options);
     const Box3 box = bounding_box(c.surface.points);
+    const double gradation = as_octree_field(h)->gradation;
+    EXPECT_EQ(gradation, c.options.gradation.value_or(gradation));
     std::uniform_real_distribution<double> exponent(-4, 0);
     for (int n = 0; n < 20000; ++n) {
       const Vec3 p = random_point(random, box);
       const Vec3 q = p + (random_point(random, box) - p) * std::pow(10, exponent(random));
-      ASSERT_LE(std::abs(h.at(p) - h.at(q)), c.options.gradation * distance(p, q) * (1 + 1e-9) + 1e-14 * h.max_size());
+      ASSERT_LE(std::abs(h.at(p) - h.at(q)), gradation * distance(p, q) * (1 + 1e-9) + 1e-14 * h.max_size());
     }
   }
 }

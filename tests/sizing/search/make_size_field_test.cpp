@@ -39,6 +39,25 @@ TEST(SizeField, AutomaticSizesFollowThePlateSmoothly) {
   EXPECT_LT(before, 10'000);
 }
 
+double gradation_of(const SurfaceMesh& surface, const SizeOptions& options) {
+  return as_octree_field(sizes_of(surface, options))->gradation;
+}
+
+/// Where sizes are alike they rise slowly; towards few small places fast, so that these do not rule the whole.
+TEST(SizeField, GradationFollowsFromTheSpreadOfSizes) {
+  SizeOptions options;
+  EXPECT_EQ(gradation_of(icosphere(3), options), kDefaultGradation);
+  options.size = 0.1;
+  EXPECT_EQ(gradation_of(icosphere(3), options), kDefaultGradation);
+  SizeOptions spread;
+  spread.point_sizes = {{{1, 0, 0}, 0.01}, {{-1, 0, 0}, 0.3}, {{0, 1, 0}, 0.3}, {{0, -1, 0}, 0.3}, {{0, 0, 1}, 0.3}};
+  const double steep = gradation_of(icosphere(3), spread);
+  EXPECT_GE(steep, 0.3);
+  EXPECT_LE(steep, 0.4);
+  spread.gradation = 0.2;
+  EXPECT_EQ(gradation_of(icosphere(3), spread), 0.2);
+}
+
 TEST(ExpectedTets, MeetsTheTarget) {
   for (const std::int64_t elements : {3000, 100000, 2000000}) {
     SizeOptions o;
@@ -73,8 +92,10 @@ TEST(AutomaticBudget, GrowsWithTheTrianglesAndIsTheUsersOwnWhereHeChooses) {
   const SurfaceMesh ball = icosphere(2), fine = icosphere(4);
   EXPECT_GT(automatic_budget(fine, {}), automatic_budget(ball, {}));
   SizeOptions o;
-  o.automatic_factor = 2;
-  EXPECT_EQ(automatic_budget(ball, o), automatic_budget(ball, {}) / 8);
+  o.automatic_factor = 0.5;
+  EXPECT_EQ(automatic_budget(ball, o), automatic_budget(ball, {}) * 8);
+  o.automatic_factor = 10;
+  EXPECT_EQ(automatic_budget(ball, o), 50'000);
   o.curvature = 30;
   EXPECT_EQ(automatic_budget(ball, o), HUGE_VAL);
 }
@@ -102,11 +123,11 @@ TEST(AutomaticBudget, HoldsForDetailsWithoutEnd) {
   for (int k = 1; k < 60; ++k) plates = testing::joined(plates, transformed(box(1, 1, 0.002), 1, {0, 0, 0.016 * k}));
   const KnownSurface known(plates, 40);
   StageReport report;
-  const double budget = 100'000;
+  const double budget = 20'000;
   const SizeField sizes = make_size_field(known, {}, {RunContext{}, report}, {}, budget);
   EXPECT_LT(expected_tets(sizes, plates), 1.1 * budget);
   ASSERT_EQ(report.notes.size(), 1u);
-  EXPECT_NE(report.notes[0].find("at most 0.1 million"), std::string::npos) << report.notes[0];
+  EXPECT_NE(report.notes[0].find("at most 0.02 million"), std::string::npos) << report.notes[0];
 }
 
 /// Their details are counted on the surface alone.
