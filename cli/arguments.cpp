@@ -542,7 +542,9 @@ void declare_sizes(CLI::App& command, Arguments& a) {
                    "Automatic sizes times this: .5 makes eight times as many elements")
       ->type_name("F")
       ->capture_default_str();
-  group->add_option("--gradation,--grading", o.gradation, "How fast sizes may change: |h(x) - h(y)| <= G |x - y| [by the spread of sizes, .12 to .4]")
+  group
+      ->add_option("--gradation,--grading", o.gradation,
+                   "How fast sizes may change: |h(x) - h(y)| <= G |x - y| [by the spread of sizes, .12 to .4]")
       ->type_name("G");
   add_choice<SizeOptions::Interior>(
       *group, "--interior", o.interior,

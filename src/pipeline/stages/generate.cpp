@@ -91,7 +91,8 @@ bool wants_all(const Domain& domain, const Prepared& input, const Filled& filled
   const Options& options = run.options;
   return domain.geometry || !domain.true_volumes.empty() || !domain.sets.empty() || fins != nullptr ||
          options.order > 1 || options.improve.no_bridging || options.volume.shell != 0 || !options.split.empty() ||
-         options.surface.keep_volumes || requires_something(options.require) || owes_volume(input, filled.boundary, run);
+         options.surface.keep_volumes || requires_something(options.require) ||
+         owes_volume(input, filled.boundary, run);
 }
 
 /// `fins`: of the domain's lines and points, which it has as sheets; null: it has none.

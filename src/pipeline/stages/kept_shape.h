@@ -17,14 +17,14 @@ inline constexpr double kVolumeKept = 0.01;
 /// By which part of it a volume has changed.
 double change_of_volume(double made, double input);
 
-/// The surface made by `sizes`. If its volume is off by more than the mesh could give back and sizes are automatic: made
-/// again by smaller ones, and the input's own triangles if that does not help, or takes more elements than `budget`. A
-/// note says so.
+/// The surface made by `sizes`. If its volume is off by more than the mesh could give back and sizes are automatic:
+/// made again by smaller ones, and the input's own triangles if that does not help, or takes more elements than
+/// `budget`. A note says so.
 Remeshed remeshed_in_shape(const Prepared& input, const SizeField& sizes, const Run& run, const Stage& stage,
                            const std::function<Remeshed(const SizeField&)>& remesh, double budget = HUGE_VAL);
 
-/// Whether automatic sizes have cost a body volume that its mesh is to get back: moves of the boundary's vertices, where
-/// no true geometry says where they are.
+/// Whether automatic sizes have cost a body volume that its mesh is to get back: moves of the boundary's vertices,
+/// where no true geometry says where they are.
 bool owes_volume(const Prepared& input, const Remeshed& boundary, const Run& run);
 
 /// The volume filled and improved. Where improvement changes the volume by more than kVolumeKept it is done once more

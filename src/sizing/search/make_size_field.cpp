@@ -9,8 +9,8 @@
 #include "sizing/prediction/expected_tets.h"
 #include "sizing/search/budget.h"
 #include "sizing/search/count_search.h"
-#include "sizing/sources/check_size_options.h"
 #include "sizing/search/spread.h"
+#include "sizing/sources/check_size_options.h"
 #include "sizing/sources/source_grid.h"
 
 #include <algorithm>

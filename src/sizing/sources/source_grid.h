@@ -21,7 +21,8 @@ GridRules grid_rules(const SizeOptions& options, double ceiling);
 std::shared_ptr<OctreeField> with_regions(std::shared_ptr<OctreeField> grid, const SizeOptions& options,
                                           const RunContext& context);
 
-/// For a look at what sizes come to: leaves are so many times larger than they are to be, and OctreeField::source stays.
+/// For a look at what sizes come to: leaves are so many times larger than they are to be, and OctreeField::source
+/// stays.
 struct GridLook {
   double coarser = 1;
   bool keeps_sources = false;

@@ -53,7 +53,7 @@ TEST(Expected, ThinWallsHaveTheElementsAnnounced) {
 SurfaceMesh rough_ball() {
   SurfaceMesh ball = testing::icosphere(4);
   std::mt19937 random(7);
-  std::uniform_real_distribution<double> off(-0.03, 0.03);
+  std::uniform_real_distribution<double> off(-0.06, 0.06);
   for (Vec3& p : ball.points) p = p * (1 + off(random));
   return ball;
 }
@@ -129,7 +129,7 @@ TEST(Expected, SizesAndMeshMeetTheSameNumber) {
       const Report sizes = generate_sizes(m.surface, options).report, mesh = generate(m.surface, options).report;
       const auto wanted = static_cast<double>(n), made = static_cast<double>(mesh.tets);
       EXPECT_LT(share(sizes.expected_tets, made), 0.15);
-      EXPECT_TRUE(share(sizes.expected_tets, wanted) < 0.15 || says_why_not(sizes)) << sizes.expected_tets;
+      EXPECT_TRUE(share(sizes.expected_tets, wanted) < 0.2 || says_why_not(sizes)) << sizes.expected_tets;
       EXPECT_TRUE(share(made, wanted) < 0.15 || says_why_not(mesh)) << made;
     }
   }

@@ -120,14 +120,14 @@ TEST(AutomaticBudget, HoldsBelowALargestSize) {
 /// Thousands of thin walls: raising the smallest sizes a little does not help.
 TEST(AutomaticBudget, HoldsForDetailsWithoutEnd) {
   SurfaceMesh plates = box(1, 1, 0.002);
-  for (int k = 1; k < 60; ++k) plates = testing::joined(plates, transformed(box(1, 1, 0.002), 1, {0, 0, 0.016 * k}));
+  for (int k = 1; k < 150; ++k) plates = testing::joined(plates, transformed(box(1, 1, 0.002), 1, {0, 0, 0.0065 * k}));
   const KnownSurface known(plates, 40);
   StageReport report;
-  const double budget = 20'000;
+  const double budget = 100'000;
   const SizeField sizes = make_size_field(known, {}, {RunContext{}, report}, {}, budget);
   EXPECT_LT(expected_tets(sizes, plates), 1.1 * budget);
-  ASSERT_EQ(report.notes.size(), 1u);
-  EXPECT_NE(report.notes[0].find("at most 0.02 million"), std::string::npos) << report.notes[0];
+  ASSERT_GE(report.notes.size(), 1u);
+  EXPECT_NE(report.notes[0].find("at most 0.1 million"), std::string::npos) << report.notes[0];
 }
 
 /// Their details are counted on the surface alone.
