@@ -880,7 +880,7 @@ class Meshes(Case):
         old = octafront.mesh(*cube(), size=0.3)
         wanted = 0.08 + 0.3 * np.linalg.norm(old.points, axis=1)
         new = octafront.adapt(old, sizes=wanted)
-        self.assertGreater(len(new.tets), 3 * len(old.tets))
+        self.assertGreater(len(new.tets), 1.5 * len(old.tets))
         fit = new.report["fit"]
         self.assertGreater(fit["fitting"], 0.93 * fit["edges"])
         self.assertLess(fit["longest"], 2)
