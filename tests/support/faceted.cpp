@@ -18,6 +18,19 @@ void add_quad(SurfaceMesh& s, VertexIndex a, VertexIndex b, VertexIndex c, Verte
   s.triangles.push_back({a, c, d});
 }
 
+constexpr double kThreadHeight = 1.2;
+
+/// Rows of points around a thread, from below.
+void add_thread(SurfaceMesh& s, int sides, int steps, double turn) {
+  constexpr double kDepth = .12, kPitch = .8;
+  for (int k = 0; k <= steps; ++k)
+    for (int i = 0; i < sides; ++i) {
+      const double z = kThreadHeight * k / steps, angle = turn + 2 * kPi * i / sides;
+      const double fade = std::sin(kPi * z / kThreadHeight);
+      s.points.push_back(on_circle(1 + kDepth * fade * fade * std::sin(2 * kPi * z / kPitch - angle), angle, z));
+    }
+}
+
 }  // namespace
 
 SurfaceMesh faceted_pin(int sides, double radius, double low, double high, double turn) {
@@ -83,6 +96,35 @@ SurfaceMesh faceted_segment(int sides, double inner, double outer, double low, d
   add_quad(part, 0, 3 * n, 2 * n, n);
   add_quad(part, n - 1, 2 * n - 1, 3 * n - 1, 4 * n - 1);
   return part;
+}
+
+SurfaceMesh faceted_screw(int sides, int steps, double turn) {
+  SurfaceMesh screw;
+  add_thread(screw, sides, steps, turn);
+  const auto n = static_cast<VertexIndex>(sides), top = static_cast<VertexIndex>(steps) * n, low = top + n;
+  screw.points.push_back({0, 0, 0});
+  screw.points.push_back({0, 0, kThreadHeight});
+  for (VertexIndex i = 0; i < n; ++i) {
+    const VertexIndex j = (i + 1) % n;
+    for (VertexIndex k = 0; k < top; k += n) add_quad(screw, k + j, k + n + j, k + n + i, k + i);
+    screw.triangles.push_back({low, j, i});
+    screw.triangles.push_back({low + 1, top + i, top + j});
+  }
+  return screw;
+}
+
+SurfaceMesh faceted_nut(int sides, int steps) {
+  SurfaceMesh nut;
+  add_thread(nut, sides, steps, 0);
+  const auto n = static_cast<VertexIndex>(sides), rows = static_cast<VertexIndex>(steps + 3);
+  for (const double z : {kThreadHeight, 0.})
+    for (int i = 0; i < sides; ++i) nut.points.push_back(on_circle(2, 2 * kPi * i / sides, z));
+  for (VertexIndex i = 0; i < n; ++i)
+    for (VertexIndex k = 0; k < rows; ++k) {
+      const VertexIndex j = (i + 1) % n, l = (k + 1) % rows;
+      add_quad(nut, k * n + i, l * n + i, l * n + j, k * n + j);
+    }
+  return nut;
 }
 
 }  // namespace octafront::testing

@@ -18,4 +18,9 @@ SurfaceMesh faceted_ball(int around, int down, double radius);
 /// The part of a ring between two angles, radians, from `low` to `high`.
 SurfaceMesh faceted_segment(int sides, double inner, double outer, double low, double high, double from, double to);
 
+/// A screw of radius 1 and height 1.2 with a turn and a half of a round thread that fades out towards its ends, in
+/// `steps` rows; and what it fits in, with an outer radius of 2.
+SurfaceMesh faceted_screw(int sides, int steps, double turn = 0);
+SurfaceMesh faceted_nut(int sides, int steps);
+
 }  // namespace octafront::testing

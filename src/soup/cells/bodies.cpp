@@ -7,6 +7,7 @@
 #include "base/core/wording.h"
 #include "base/geometry/measures.h"
 #include "base/mesh/complex.h"
+#include "base/mesh/edge_table.h"
 #include "soup/cells/close_gaps.h"
 #include "soup/cells/dissolve.h"
 #include "soup/cells/labelled.h"
@@ -419,25 +420,43 @@ struct Joining {
   const RunContext& context;
 };
 
+/// The sine of 20 degrees: wider wedges are none.
+constexpr double kWide = 0.34;
+
 /// The bodies as one complex, and how well their walls have come together.
 struct JoinedWay {
   Joined joined;
   std::uint64_t crossings = 0;
   double shortest = HUGE_VAL;  ///< edge
+  double narrowest = kWide;    ///< sine of a wedge, up to that
+  /// Short edges and narrow wedges are what elements suffer from.
+  double worth() const { return shortest * narrowest; }
+  bool is_sound() const { return crossings == 0 && narrowest >= kWide; }
 };
 
-double shortest_edge(const SurfaceMesh& surface) {
-  double least = HUGE_VAL;
-  for (const Triangle& t : surface.triangles)
-    for (int i = 0; i < 3; ++i) least = std::min(least, distance(surface.points[t[i]], surface.points[t[(i + 1) % 3]]));
-  return least;
+void measure(const SurfaceMesh& surface, JoinedWay& way) {
+  const EdgeTable table = make_edge_table(surface.points.size(), surface.triangles);
+  for (std::size_t e = 0; e < table.size(); ++e) {
+    const Vec3 p = surface.points[table.edges[e][0]], q = surface.points[table.edges[e][1]];
+    way.shortest = std::min(way.shortest, distance(p, q));
+    const Vec3 along = normalized(q - p);
+    std::vector<Vec3> sides;
+    for (const HalfEdge h : table.uses(e)) {
+      const Triangle& t = surface.triangles[h / 3];
+      const Vec3 side = surface.points[t[(h % 3 + 2) % 3]] - p;
+      sides.push_back(normalized(side - dot(side, along) * along));
+    }
+    for (std::size_t i = 0; i < sides.size(); ++i)
+      for (std::size_t j = 0; j < i; ++j)
+        if (dot(sides[i], sides[j]) > 0) way.narrowest = std::min(way.narrowest, length(cross(sides[i], sides[j])));
+  }
 }
 
 /// Walls that are `near` come together; what lies between others that belong together is given away as slivers.
-JoinedWay joined_by(const Misfits& near, const Joining& joining) {
+JoinedWay joined_by(const Misfits& near, Rims rims, const Joining& joining) {
   using Overlap = ComplexOptions::Overlap;
   const auto& [bodies, options, all, misfits, context] = joining;
-  const ClosedGaps closed = close_gaps({all.points, all.triangles, all.body}, near, context);
+  const ClosedGaps closed = close_gaps({all.points, all.triangles, all.body}, near, rims, context);
   const Arrangement arranged = arrange(closed.points, closed.triangles, context);
   const Cells cells(arranged.points, arranged.triangles, context);
 
@@ -491,25 +510,29 @@ JoinedWay joined_by(const Misfits& near, const Joining& joining) {
   note_common_regions(labelled, bodies.size(), end_of_common, notes);
   notes.insert(notes.end(), complex.notes.begin(), complex.notes.end());
   complex.notes = std::move(notes);
-  const double shortest = shortest_edge(complex.surface);
-  return {{std::move(complex), are_nested(windings)}, arranged.new_points, shortest};
+  JoinedWay way{{std::move(complex), are_nested(windings)}, arranged.new_points};
+  measure(way.joined.complex.surface, way);
+  return way;
 }
 
 /// Walls of fine facets are best brought together whole. Coarse ones may cross in vain then, and are better left where
 /// they are.
 JoinedWay best_way(const Joining& joining) {
   const Misfits& misfits = joining.misfits;
-  if (misfits.largest() <= misfits.floor()) return joined_by(misfits, joining);
-  std::optional<JoinedWay> together;
-  try {
-    together = joined_by(misfits, joining);
-    if (together->crossings == 0) return std::move(*together);
-    JoinedWay apart = joined_by(misfits.without_contacts(), joining);
-    return apart.shortest > together->shortest ? std::move(apart) : std::move(*together);
-  } catch (const InputError&) {
-    if (together) return std::move(*together);
-    return joined_by(misfits.without_contacts(), joining);
+  const Misfits apart = misfits.without_contacts();
+  if (misfits.largest() <= misfits.floor()) return joined_by(misfits, Rims::kBend, joining);
+  std::optional<JoinedWay> best;
+  for (const auto& [near, rims] : {std::pair{&misfits, Rims::kBend}, {&misfits, Rims::kKeep}, {&apart, Rims::kBend}}) {
+    const bool is_last = near == &apart;
+    try {
+      JoinedWay way = joined_by(*near, rims, joining);
+      if (!best || way.worth() > best->worth()) best = std::move(way);
+    } catch (const InputError&) {
+      if (is_last && !best) throw;
+    }
+    if (best && best->is_sound()) break;
   }
+  return std::move(*best);
 }
 
 }  // namespace

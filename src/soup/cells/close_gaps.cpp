@@ -6,6 +6,7 @@
 #include "base/geometry/plane_mesh.h"
 #include "base/geometry/predicates.h"
 #include "base/geometry/triangle_tree.h"
+#include "soup/cells/shared_walls.h"
 
 #include <algorithm>
 #include <array>
@@ -51,11 +52,6 @@ std::optional<GapMeeting> inner_meeting(Vec3 a, Vec3 b, Vec3 c, Vec3 d) {
   return GapMeeting{a + s * u, c + t * v};
 }
 
-struct BodyFace {
-  Triangle corners;
-  std::uint32_t body, source;
-};
-
 /// Shortest edges at vertices.
 class Lengths {
  public:
@@ -84,7 +80,9 @@ struct Party {
   std::vector<Triangle> triangles;
   std::vector<Vec3> normals;
   std::map<VertexIndex, std::vector<std::uint32_t>> around;
-  std::set<Edge> ends;  ///< where sheets end
+  std::set<Edge> ends;                               ///< where sheets end
+  std::map<Edge, std::vector<std::uint32_t>> sharp;  ///< where walls turn, or end; and these
+  std::set<VertexIndex> sharp_vertices;
   std::set<VertexIndex> end_vertices;
 
   Party(std::vector<BodyFace> given, const std::vector<Vec3>& points) : faces(std::move(given)) {
@@ -99,14 +97,30 @@ struct Party {
   void find_ends() {
     ends.clear();
     end_vertices.clear();
+    sharp.clear();
+    sharp_vertices.clear();
     std::map<Edge, std::vector<std::uint32_t>> uses;
     for (std::uint32_t t = 0; t < triangles.size(); ++t)
       for (int i = 0; i < 3; ++i) uses[sorted_edge(triangles[t][i], triangles[t][(i + 1) % 3])].push_back(t);
     for (const auto& [e, of] : uses) {
-      if (e[0] == e[1] || of.size() != 1) continue;
+      if (e[0] == e[1]) continue;
+      if (of.size() != 2 || !is_curved(normals[of[0]], normals[of[1]])) {
+        sharp.emplace(e, of);
+        sharp_vertices.insert(e.begin(), e.end());
+      }
+      if (of.size() != 1) continue;
       ends.insert(e);
       end_vertices.insert(e.begin(), e.end());
     }
+  }
+  std::vector<Edge> edges() const {
+    std::vector<Edge> all;
+    for (const Triangle& t : triangles)
+      for (int i = 0; i < 3; ++i) all.push_back(sorted_edge(t[i], t[(i + 1) % 3]));
+    std::sort(all.begin(), all.end());
+    all.erase(std::unique(all.begin(), all.end()), all.end());
+    std::erase_if(all, [](const Edge& e) { return e[0] == e[1]; });
+    return all;
   }
   void find_around() {
     around.clear();
@@ -119,12 +133,13 @@ struct Party {
 class BodyMeeting {
  public:
   BodyMeeting(std::vector<Vec3>& points, std::vector<BodyFace> earlier, std::vector<BodyFace> later,
-              const Misfits& misfits, const Lengths& lengths, const RunContext& context)
+              const Misfits& misfits, Rims rims, const Lengths& lengths, const RunContext& context)
       : points_(points),
         earlier_(std::move(earlier), points),
         later_(std::move(later), points),
         body_(later_.faces.front().body),
         misfits_(misfits),
+        rims_(rims),
         lengths_(lengths),
         context_(context) {
     for (const BodyFace& f : earlier_.faces) most_ = std::max(most_, reach(f));
@@ -134,15 +149,21 @@ class BodyMeeting {
     const TriangleTree earlier(points_, earlier_.triangles);
     move_vertices(earlier);
     merge_equal_points();
-    for (const Triangle& t : earlier_.triangles)
-      for (int i = 0; i < 3; ++i) kept_edges_.push_back(sorted_edge(t[i], t[(i + 1) % 3]));
-    std::sort(kept_edges_.begin(), kept_edges_.end());
+    kept_edges_ = earlier_.edges();
     const TriangleTree later(points_, later_.triangles);
     put_vertices_on(later, earlier_, later_, inside_later_, true);
     put_vertices_on(earlier, later_, earlier_, inside_earlier_, false);
+    find_settled();
     cross_edges(earlier);
+    follow_edges();
+    // Where the later body's walls turn, they may leave the earlier ones.
+    for (const auto& [f, of] : later_.sharp) {
+      const std::vector<VertexIndex> line = along(f);
+      for (std::size_t k = 0; k + 1 < line.size(); ++k) add_edge(line[k], line[k + 1]);
+    }
     divide(earlier_, inside_earlier_, divided_earlier);
     divide(later_, inside_later_, divided_later);
+    if (later_.ends.empty()) share_walls(points_, divided_earlier, divided_later, misfits_, context_);
   }
 
   std::vector<BodyFace> divided_earlier, divided_later;
@@ -163,6 +184,18 @@ class BodyMeeting {
                        [&](std::uint32_t t) { return face_each_other(of.normals[t], normal, way); });
   }
 
+  /// Whether a vertex of the later body lies on walls that turn as those at an edge of earlier ones do.
+  bool is_same_corner(VertexIndex v, const Edge& e) const {
+    const auto found = earlier_.sharp.find(e);
+    if (found == earlier_.sharp.end()) return false;
+    const std::vector<std::uint32_t>& around = later_.around.at(v);
+    return std::all_of(found->second.begin(), found->second.end(), [&](std::uint32_t t) {
+      return std::any_of(around.begin(), around.end(), [&](std::uint32_t s) {
+        return face_each_other(later_.normals[s], earlier_.normals[t], earlier_.normals[t]);
+      });
+    });
+  }
+
   void move_vertices(const TriangleTree& tree) {
     // The largest misfit first: where three bodies meet, corners are near each other only once they are on the same
     // wall.
@@ -173,7 +206,7 @@ class BodyMeeting {
   }
 
   /// Onto the nearest place of a wall that it belongs to: to a vertex rather than an edge, to an edge rather than a
-  /// face, if these are near beside the edges there.
+  /// face, if these are near beside the edges there; from where walls turn to where they turn, before all.
   void move_vertex(VertexIndex v, const TriangleTree& tree, double of_reach) {
     const Vec3 p = points_[v];
     const double floor = misfits_.floor();
@@ -192,11 +225,15 @@ class BodyMeeting {
     if (nearest > of_reach) return;
     // Up to rounding what is nearest, whatever the edges.
     const double here = nearest * (1 + 1e-9);
-    std::array<double, 2> least{TriangleTree::kFar, TriangleTree::kFar};
-    std::array<Vec3, 2> target;
+    constexpr double kFar = TriangleTree::kFar;
+    std::array<double, 4> least{kFar, kFar, kFar, kFar};
+    std::array<Vec3, 4> target;
+    const bool is_sharp = later_.sharp_vertices.contains(v);
     const auto offer = [&](std::size_t kind, Vec3 q, double edge) {
       const double d = distance(p, q);
-      if (d > std::max({here, floor, std::min(of_reach, kOfEdge * std::min(edge, lengths_.at(v)))})) return;
+      const double beside = is_sharp && kind > 1 && rims_ == Rims::kKeep ? 0 : kOfEdge * std::min(edge, lengths_.at(v));
+      const double along = kind == 1 ? of_reach : std::min(of_reach, beside);
+      if (d > std::max({here, floor, along})) return;
       if (d >= least[kind]) return;
       least[kind] = d;
       target[kind] = q;
@@ -205,15 +242,17 @@ class BodyMeeting {
       if (reach(earlier_.faces[t]) != of_reach) return true;
       for (int i = 0; i < 3; ++i) {
         const Triangle& corners = earlier_.triangles[t];
-        offer(0, points_[corners[i]], lengths_.at(corners[i]));
+        const bool at_sharp = is_sharp && earlier_.sharp_vertices.contains(corners[i]);
+        offer(at_sharp ? 0 : 2, points_[corners[i]], lengths_.at(corners[i]));
         // The same point from both sides of an edge.
         const Edge e = sorted_edge(corners[i], corners[(i + 1) % 3]);
-        offer(1, closest_point_on_segment(p, points_[e[0]], points_[e[1]]), distance(points_[e[0]], points_[e[1]]));
+        offer(is_sharp && is_same_corner(v, e) ? 1 : 3, closest_point_on_segment(p, points_[e[0]], points_[e[1]]),
+              distance(points_[e[0]], points_[e[1]]));
       }
       return true;
     });
-    if (least[1] < TriangleTree::kFar) at = target[1];
-    if (least[0] < TriangleTree::kFar) at = target[0];
+    const auto best = std::find_if(least.begin(), least.end(), [](double d) { return d < kFar; });
+    if (best != least.end()) at = target[static_cast<std::size_t>(best - least.begin())];
     if (at == p) return;
     ++moved;
     largest_move = std::max(largest_move, distance(p, at));
@@ -298,6 +337,11 @@ class BodyMeeting {
       inside[face].push_back(v);
       return;
     }
+    const auto is_sharp = [&](const auto& edge) { return on.sharp.contains(edge.second); };
+    if (of.sharp_vertices.contains(v) && std::any_of(edges.begin(), edges.end(), is_sharp)) {
+      std::erase_if(edges, [&](const auto& edge) { return !is_sharp(edge); });
+      least = std::min_element(edges.begin(), edges.end())->first;
+    }
     for (const auto& [d, e] : edges)
       if (d <= std::max(floor, least)) on_edge_[e].insert(v);
   }
@@ -323,6 +367,7 @@ class BodyMeeting {
         const Edge e = sorted_edge(earlier_.triangles[t][i], earlier_.triangles[t][(i + 1) % 3]);
         const Edge f = sorted_edge(later_.triangles[s][j], later_.triangles[s][(j + 1) % 3]);
         if (e[0] == f[0] || e[0] == f[1] || e[1] == f[0] || e[1] == f[1] || is_kept(f)) continue;
+        if (settled_.contains(e) || settled_.contains(f)) continue;
         const auto meeting = inner_meeting(points_[e[0]], points_[e[1]], points_[f[0]], points_[f[1]]);
         if (!meeting) continue;
         const Vec3 way = meeting->at - meeting->other;
@@ -338,7 +383,8 @@ class BodyMeeting {
     std::set<VertexIndex>& on_e = on_edge_[e];
     std::set<VertexIndex>& on_f = on_edge_[f];
     const double shorter = std::min(distance(points_[e[0]], points_[e[1]]), distance(points_[f[0]], points_[f[1]]));
-    const double near = std::max(misfits_.floor(), std::min(most, kOfEdge * shorter));
+    const bool bends = rims_ == Rims::kBend || !later_.sharp.contains(f) || earlier_.sharp.contains(e);
+    const double near = std::max(misfits_.floor(), bends ? std::min(most, kOfEdge * shorter) : 0);
     // What lies on the earlier edge there is where the later one goes through.
     std::optional<VertexIndex> known;
     double least = near;
@@ -374,6 +420,56 @@ class BodyMeeting {
     });
     line.push_back(e[1]);
     return line;
+  }
+
+  /// The edges that each vertex lies on.
+  using Lines = std::unordered_map<VertexIndex, std::vector<Edge>>;
+  Lines lines_of(const std::vector<Edge>& edges) const {
+    Lines lines;
+    for (const Edge& e : edges)
+      for (const VertexIndex v : along(e)) lines[v].push_back(e);
+    return lines;
+  }
+  static std::vector<Edge> common_edges(const Lines& lines, VertexIndex a, VertexIndex b) {
+    std::vector<Edge> common;
+    const auto of_a = lines.find(a), of_b = lines.find(b);
+    if (of_a == lines.end() || of_b == lines.end()) return common;
+    std::set_intersection(of_a->second.begin(), of_a->second.end(), of_b->second.begin(), of_b->second.end(),
+                          std::back_inserter(common));
+    return common;
+  }
+
+  /// Edges that go along edges of the other party from end to end cross none.
+  void find_settled() {
+    const std::vector<Edge> of_later = later_.edges();
+    const auto settle = [&](const std::vector<Edge>& edges, const Lines& others) {
+      for (const Edge& e : edges) {
+        const std::vector<VertexIndex> line = along(e);
+        bool is_settled = true;
+        for (std::size_t k = 0; k + 1 < line.size() && is_settled; ++k)
+          is_settled = !common_edges(others, line[k], line[k + 1]).empty();
+        if (is_settled) settled_.insert(e);
+      }
+    };
+    settle(of_later, lines_of(kept_edges_));
+    settle(kept_edges_, lines_of(of_later));
+  }
+
+  /// Between two vertices of one edge of earlier walls an edge goes along it, through all that lie on it.
+  void follow_edges() {
+    const Lines lines = lines_of(kept_edges_);
+    for (const Edge& f : later_.edges()) {
+      if (is_kept(f)) continue;
+      const std::vector<VertexIndex> line = along(f);
+      for (std::size_t k = 0; k + 1 < line.size(); ++k)
+        for (const Edge& e : common_edges(lines, line[k], line[k + 1])) follow(f, line[k], line[k + 1], along(e));
+    }
+  }
+  void follow(const Edge& f, VertexIndex from, VertexIndex to, const std::vector<VertexIndex>& along_e) {
+    auto a = std::find(along_e.begin(), along_e.end(), from), b = std::find(along_e.begin(), along_e.end(), to);
+    if (a > b) std::swap(a, b);
+    for (const VertexIndex v : std::vector<VertexIndex>(a + 1, b))
+      if (v != f[0] && v != f[1]) on_edge_[f].insert(v);
   }
 
   using Border = std::vector<std::array<VertexIndex, 2>>;
@@ -494,10 +590,12 @@ class BodyMeeting {
   Party earlier_, later_;
   std::uint32_t body_;
   const Misfits& misfits_;
+  Rims rims_;
   const Lengths& lengths_;
   const RunContext& context_;
   double most_ = 0;
   std::vector<Edge> kept_edges_;  ///< of earlier bodies, sorted
+  std::set<Edge> settled_;
   std::map<Edge, std::set<VertexIndex>> on_edge_;
   std::map<std::uint32_t, std::vector<VertexIndex>> inside_earlier_, inside_later_;  ///< per triangle
   std::unordered_map<VertexIndex, std::vector<VertexIndex>> neighbours_;             ///< by divided edges
@@ -506,8 +604,8 @@ class BodyMeeting {
 /// One body after the other comes to those that are together already.
 class Closing {
  public:
-  Closing(const BodySoup& soup, const Misfits& misfits, const RunContext& context)
-      : soup_(soup), misfits_(misfits), context_(context), lengths_(closed_.points) {
+  Closing(const BodySoup& soup, const Misfits& misfits, Rims rims, const RunContext& context)
+      : soup_(soup), misfits_(misfits), rims_(rims), context_(context), lengths_(closed_.points) {
     closed_.points = soup.points;
   }
 
@@ -548,7 +646,7 @@ class Closing {
       together_[b] = std::move(body);
       return;
     }
-    BodyMeeting meeting(closed_.points, std::move(near), std::move(body), misfits_, lengths_, context_);
+    BodyMeeting meeting(closed_.points, std::move(near), std::move(body), misfits_, rims_, lengths_, context_);
     meeting.run();
     for (const std::vector<BodyFace>* divided : {&meeting.divided_earlier, &meeting.divided_later})
       for (const BodyFace& f : *divided) {
@@ -566,6 +664,7 @@ class Closing {
 
   const BodySoup& soup_;
   const Misfits& misfits_;
+  Rims rims_;
   const RunContext& context_;
   ClosedGaps closed_;
   Lengths lengths_;
@@ -575,8 +674,8 @@ class Closing {
 
 }  // namespace
 
-ClosedGaps close_gaps(const BodySoup& soup, const Misfits& misfits, const RunContext& context) {
-  if (misfits.floor() > 0) return Closing(soup, misfits, context).result();
+ClosedGaps close_gaps(const BodySoup& soup, const Misfits& misfits, Rims rims, const RunContext& context) {
+  if (misfits.floor() > 0) return Closing(soup, misfits, rims, context).result();
   ClosedGaps same{soup.points, soup.triangles, {}, 0, 0};
   same.source.resize(soup.triangles.size());
   std::iota(same.source.begin(), same.source.end(), 0);

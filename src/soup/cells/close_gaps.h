@@ -20,9 +20,13 @@ struct ClosedGaps {
   double largest_move = 0;
 };
 
+/// Where the wall of a later body turns away from an earlier one: it goes through vertices and edges of that which are
+/// near beside its own edges, or stays in its plane.
+enum class Rims { kBend, kKeep };
+
 /// Brings walls of bodies together that are nearer than their misfit: vertices of later bodies move onto vertices,
 /// edges and faces of earlier ones, which stay where they are, and faces of each get the vertices and edges of the
 /// other that lie on them. What is left between is cells thinner than the misfit. Without any nothing changes.
-ClosedGaps close_gaps(const BodySoup& soup, const Misfits& misfits, const RunContext& context);
+ClosedGaps close_gaps(const BodySoup& soup, const Misfits& misfits, Rims rims, const RunContext& context);
 
 }  // namespace octafront::cells

@@ -28,11 +28,6 @@ constexpr double kCurved = 0.4226;
 /// Elements of a mesh whose sizes nobody chose, about.
 constexpr double kUsualElements = 30'000;
 
-/// Whether facets side by side may be of one curved wall: the edge between is not sharp.
-bool is_curved(Vec3 n, Vec3 m) {
-  return dot(n, m) >= kCurved;
-}
-
 /// One body, as its neighbours meet it.
 struct BodyWall {
   std::vector<Triangle> triangles;
@@ -42,6 +37,12 @@ struct BodyWall {
   std::vector<double> sagitta;                     ///< per triangle: how far its facet is from what it stands for
   std::vector<double> sagitta_at;                  ///< per vertex
   std::vector<char> at_end;                        ///< per vertex: where a sheet ends
+  /// Between two triangles; ends by their places in `vertices`.
+  struct WallEdge {
+    std::size_t v, w;
+    std::uint32_t s, t;
+  };
+  std::vector<WallEdge> edges;
   double largest_sagitta = 0;
   Box3 box;
   std::unique_ptr<TriangleTree> tree;
@@ -75,15 +76,16 @@ struct BodyWall {
     std::vector<Triangle> local = triangles;
     for (Triangle& t : local)
       for (VertexIndex& v : t) v = static_cast<VertexIndex>(place_of(v));
-    const EdgeTable edges = make_edge_table(vertices.size(), local);
-    for (std::size_t e = 0; e < edges.size(); ++e) {
-      const auto uses = edges.uses(e);
+    const EdgeTable table = make_edge_table(vertices.size(), local);
+    for (std::size_t e = 0; e < table.size(); ++e) {
+      const auto uses = table.uses(e);
       if (uses.size() == 1)
-        for (const VertexIndex v : edges.edges[e]) at_end[v] = 1;
+        for (const VertexIndex v : table.edges[e]) at_end[v] = 1;
       if (uses.size() != 2) continue;
       const std::uint32_t s = uses[0] / 3, t = uses[1] / 3;
+      edges.push_back({table.edges[e][0], table.edges[e][1], s, t});
       if (!is_curved(normals[s], normals[t])) continue;
-      const Vec3 p = points[vertices[edges.edges[e][0]]], q = points[vertices[edges.edges[e][1]]];
+      const Vec3 p = points[vertices[table.edges[e][0]]], q = points[vertices[table.edges[e][1]]];
       double width = 0;
       for (const HalfEdge h : uses) {
         const auto [a, b, c] = triangles[h / 3];
@@ -116,6 +118,10 @@ MisfitLimits limits_for(const ComplexOptions& options, const ElementsToCome& ele
   double volume = 0;
   for (const Body& b : bodies) volume += std::abs(enclosed_volume(b.surface));
   return limits_for(options.tolerance, elements, volume);
+}
+
+bool is_curved(Vec3 n, Vec3 m) {
+  return dot(n, m) >= kCurved;
 }
 
 bool face_each_other(Vec3 n, Vec3 m, Vec3 way) {
@@ -190,39 +196,78 @@ class Measuring {
     return std::max(kOfSize * limits_.size, kOfSagitta * (a.largest_sagitta + b.largest_sagitta));
   }
 
-  /// The farthest that a vertex of `a` lies from a wall of `b` that it belongs to.
+  /// A place on a wall, by its normal (or 0: any), and how far facets may be from what they stand for there.
+  struct Place {
+    Vec3 at, normal;
+    double sagitta;
+    double across = 0;  ///< the least cosine of the way to the other wall with that one's normal
+  };
+
+  /// The farthest that `a` lies from a wall of `b` that it belongs to.
   double misfit(const BodyWall& a, const BodyWall& b) const {
     const double most = most_between(a, b);
     const Box3 near_b = grown(b.box, most);
     double largest = 0;
+    std::vector<char> in_contact(a.vertices.size(), 0);
     for (std::size_t v = 0; v < a.vertices.size(); ++v) {
       const Vec3 p = points_[a.vertices[v]];
       if (!near_b.overlaps({p, p})) continue;
-      largest = std::max(largest, misfit_at(a, v, b, most));
+      const double d = misfit_at(a, v, b, most);
+      in_contact[v] = d > 0;
+      largest = std::max(largest, d);
     }
+    for (const BodyWall::WallEdge& e : a.edges)
+      if (!in_contact[e.v] || !in_contact[e.w]) largest = std::max(largest, misfit_along(a, e, b, near_b, most));
     return largest;
   }
 
   double misfit_at(const BodyWall& a, std::size_t v, const BodyWall& b, double most) const {
+    const Vec3 p = points_[a.vertices[v]];
     // The end of a sheet goes on to walls any way.
-    double largest = a.at_end[v] ? misfit_at(a, v, {}, b, most) : 0;
-    for (const std::uint32_t s : a.around[v]) largest = std::max(largest, misfit_at(a, v, a.normals[s], b, most));
+    double largest = a.at_end[v] ? misfit_at(a, {p, {}, a.sagitta_at[v]}, b, most) : 0;
+    for (const std::uint32_t s : a.around[v])
+      largest = std::max(largest, misfit_at(a, {p, a.normals[s], a.sagitta_at[v]}, b, most));
     return largest;
   }
 
-  /// Of one of the walls around the vertex, by its normal, or of none.
-  double misfit_at(const BodyWall& a, std::size_t v, Vec3 normal, const BodyWall& b, double most) const {
-    const Vec3 p = points_[a.vertices[v]];
+  /// Of an edge that goes through a contact, or ends in it: of some places on it.
+  double misfit_along(const BodyWall& a, const BodyWall::WallEdge& e, const BodyWall& b, const Box3& near_b,
+                      double most) const {
+    const Vec3 p = points_[a.vertices[e.v]], q = points_[a.vertices[e.w]];
+    if (!near_b.overlaps({min(p, q), max(p, q)})) return 0;
+    constexpr int kPlaces = 8;
+    // Beside the end of the other wall there is none: 37 degrees, when facets at their edges see 30.
+    constexpr double kAcross = 0.8;
+    double from = 0, to = 1;
+    for (int i = 0; i < 3; ++i) {
+      const double way = q[i] - p[i];
+      if (way == 0) continue;
+      const double x = (near_b.lo[i] - p[i]) / way, y = (near_b.hi[i] - p[i]) / way;
+      from = std::max(from, std::min(x, y));
+      to = std::min(to, std::max(x, y));
+    }
+    double largest = 0;
+    for (int k = 0; k < kPlaces && from < to; ++k) {
+      const Vec3 at = p + (from + (to - from) * (k + 0.5) / kPlaces) * (q - p);
+      for (const std::uint32_t t : {e.s, e.t})
+        largest = std::max(largest, misfit_at(a, {at, a.normals[t], a.sagitta[t], kAcross}, b, most));
+    }
+    return largest;
+  }
+
+  double misfit_at(const BodyWall& a, const Place& place, const BodyWall& b, double most) const {
+    const Vec3 p = place.at;
     double nearest = TriangleTree::kFar, allowed = 0;
     Vec3 at;
     b.tree->for_each_box_near(grown({p, p}, most), [&](std::uint32_t t, const TriangleCorners& c) {
       const Vec3 q = closest_point_on_triangle(p, c[0], c[1], c[2]);
       const double d = distance(p, q);
       if (d > most || d >= nearest) return true;
-      if (normal != Vec3{} && !face_each_other(normal, b.normals[t], p - q)) return true;
+      if (place.normal != Vec3{} && !face_each_other(place.normal, b.normals[t], p - q)) return true;
+      if (std::abs(dot(b.normals[t], p - q)) < place.across * d) return true;
       nearest = d;
       at = q;
-      allowed = kOfSagitta * (a.sagitta_at[v] + b.sagitta[t]);
+      allowed = kOfSagitta * (place.sagitta + b.sagitta[t]);
       return true;
     });
     if (!(nearest <= most)) return 0;

@@ -45,6 +45,9 @@ MisfitLimits limits_for(const ComplexOptions& options, const ElementsToCome& ele
 /// across them rather than along.
 bool face_each_other(Vec3 n, Vec3 m, Vec3 way);
 
+/// Whether facets side by side, by their normals, may be of one curved wall: the edge between is not sharp.
+bool is_curved(Vec3 n, Vec3 m);
+
 /// How far walls of two bodies that are meant to be one lie apart: a property of their contact. Walls count that are
 /// nearly parallel and nearer to each other than the limits say, and than a part of the way through either body.
 class Misfits {

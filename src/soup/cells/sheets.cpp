@@ -184,7 +184,7 @@ Complex embedded(const SurfaceMesh& surface, const std::vector<Sheet>& sheets, c
   const SheetSoup all = soup_of_sheets(surface, sheets, context);
   const cells::BodySoup soup{all.points, all.triangles, all.body};
   const cells::Misfits misfits(soup, limits, context);
-  const cells::ClosedGaps closed = cells::close_gaps(soup, misfits, context);
+  const cells::ClosedGaps closed = cells::close_gaps(soup, misfits, cells::Rims::kBend, context);
   const Arrangement arranged = arrange(closed.points, closed.triangles, context);
   const Cells cells(arranged.points, arranged.triangles, context);
   const Parts parts(arranged, closed, all);

@@ -12,6 +12,7 @@
 #include <algorithm>
 #include <cmath>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include <gtest/gtest.h>
@@ -40,6 +41,14 @@ void expect_in_contact(const Complex& complex, std::vector<double> volumes, doub
 bool is_said(const Complex& complex, const std::string& words) {
   return std::any_of(complex.notes.begin(), complex.notes.end(),
                      [&](const std::string& note) { return note.find(words) != std::string::npos; });
+}
+
+double shortest_edge(const SurfaceMesh& surface) {
+  double least = HUGE_VAL;
+  for (const auto& [a, b, c] : surface.triangles)
+    for (const auto& [p, q] : {std::pair{a, b}, std::pair{b, c}, std::pair{c, a}})
+      least = std::min(least, distance(surface.points[p], surface.points[q]));
+  return least;
 }
 
 double polygon(int sides, double radius) {
@@ -74,12 +83,45 @@ TEST(Contacts, ABoltThatStandsOut) {
   EXPECT_TRUE(self_intersections(complex.surface.points, complex.surface.triangles).empty());
 }
 
+TEST(Contacts, CoarseWallsWithoutAVertexInTheContact) {
+  // The bolt's ends are far from the ring: only its edges know how far the walls are apart.
+  const SurfaceMesh ring = faceted_ring(8, 1, 2.2, 1), bolt = faceted_pin(13, 1, -.7, 1.9, .2);
+  const double round = polygon(8, 2.2), wide = polygon(8, 1), narrow = polygon(13, 1);
+  const Complex ring_later = joined_at({{"bolt", bolt}, {"ring", ring}}, .4);
+  expect_in_contact(ring_later, {2.6 * narrow, round - narrow}, .1);
+  const Complex bolt_later = joined_at({{"ring", ring}, {"bolt", bolt}}, .4);
+  expect_in_contact(bolt_later, {round - wide, wide + 1.6 * narrow}, .4);
+  for (const Complex* complex : {&ring_later, &bolt_later}) {
+    EXPECT_GT(shortest_edge(complex->surface), .1);
+    EXPECT_FALSE(is_said(*complex, "faces divided"));
+  }
+}
+
+TEST(Contacts, WallsThatWeaveThroughEachOther) {
+  // Threads, whose facets are twisted: none of the later body's lies on one of the earlier's.
+  struct Facets {
+    int nut_sides, nut_steps, screw_sides, screw_steps;
+  };
+  for (const auto& [n, k, m, l] : {Facets{16, 12, 25, 21}, Facets{24, 18, 18, 14}, Facets{32, 12, 36, 21}}) {
+    SCOPED_TRACE(::testing::Message() << n << " against " << m);
+    const SurfaceMesh nut = testing::faceted_nut(n, k), screw = testing::faceted_screw(m, l, .1);
+    const double whole = 1.2 * polygon(n, 2), nut_alone = enclosed_volume(nut), screw_alone = enclosed_volume(screw);
+    const Complex screw_later = joined_at({{"nut", nut}, {"screw", screw}}, .4);
+    expect_in_contact(screw_later, {nut_alone, whole - nut_alone}, 1e-9);
+    EXPECT_GT(shortest_edge(screw_later.surface), .9 * std::min(1.2 / k, 2 * std::sin(std::acos(-1) / n)));
+    const Complex nut_later = joined_at({{"screw", screw}, {"nut", nut}}, .4);
+    expect_in_contact(nut_later, {screw_alone, whole - screw_alone}, 1e-9);
+  }
+}
+
 TEST(Contacts, PartOfAWall) {
   const SurfaceMesh inner = faceted_pin(24, 5, 0, 4), plaque = testing::faceted_segment(13, 5, 7, 1, 3, .3, 1.3);
   const Complex complex = joined_at({{"inner", inner}, {"plaque", plaque}}, 1);
   EXPECT_NEAR(complex.volumes[0], 4 * polygon(24, 5), 1e-9);
   EXPECT_NEAR(complex.volumes[1], testing::region_volumes(complex.surface)[1], 1e-9);
-  EXPECT_NEAR(complex.volumes[1], enclosed_volume(plaque), .1);
+  // The area of the contact, times how far the walls are apart.
+  EXPECT_NEAR(complex.volumes[1], enclosed_volume(plaque), 10 * 5 * (1 - std::cos(std::acos(-1) / 24)));
+  EXPECT_GT(shortest_edge(complex.surface), .1);
   EXPECT_TRUE(self_intersections(complex.surface.points, complex.surface.triangles).empty());
 }
 
@@ -162,6 +204,7 @@ TEST(Contacts, ThreeBodiesAtOneEdge) {
                       testing::faceted_segment(5 + i, 2, 4, 1e-5 * i, 2 - 1e-4 * i, i * third, (i + 1) * third)});
   const Complex complex = joined_at(bodies, .5);
   ASSERT_EQ(complex.volumes.size(), 4U);
+  EXPECT_GT(shortest_edge(complex.surface), .1);
   EXPECT_TRUE(self_intersections(complex.surface.points, complex.surface.triangles).empty());
   double all = 0;
   for (const double v : complex.volumes) all += v;
