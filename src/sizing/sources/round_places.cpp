@@ -25,6 +25,8 @@ constexpr double kPartOfThickness = std::numbers::pi / kElementsPerTurn;
 constexpr double kLeastRadii = 1, kMostRadii = 4;
 /// Facets on both sides of a curved wall may cross where chords lie deeper than half of its thickness.
 constexpr double kPartOfWall = 0.5;
+/// Both sides of a wall bend alike, to this part; noise does not.
+constexpr double kUnlike = 0.3;
 /// Rays begin this part of the model inside the surface, so as not to meet it where they start.
 constexpr double kSkippedPlaces = 1e-7;
 
@@ -94,13 +96,15 @@ SizeAtPlace sizes_in_round_places(const KnownSurface& known, const SurfaceCurvat
 
 SizeAtPlace sizes_in_curved_walls(const KnownSurface& known, const SurfaceCurvature& curvature,
                                   const std::vector<double>& face, double floor) {
-  // A chord of length h lies k h^2 / 8 deep. Both sides of a wall bend the same way; rims of plates bend apart.
+  // A chord of length h lies k h^2 / 8 deep. Rims of plates bend apart.
   const auto is_crossed = [&](std::size_t f, const auto& behind_within) {
     const double k = curvature.largest[f];
     if (k == 0) return false;
     const Thickness::Behind behind =
         behind_within(std::min(kLeastRadii / k, k * face[f] * face[f] / (8 * kPartOfWall)));
-    return behind.face != kNone && curvature.sum[f] * curvature.sum[behind.face] < 0;
+    return behind.face != kNone &&
+           std::abs(curvature.sum[f] + curvature.sum[behind.face]) < kUnlike * std::abs(curvature.sum[f]) &&
+           std::abs(k - curvature.largest[behind.face]) < kUnlike * k;
   };
   auto largest = std::make_shared<const std::vector<double>>(curvature.largest);
   return sizes_where_thin(known, face, floor, is_crossed, [largest](std::size_t f, double thick) {
