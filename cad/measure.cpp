@@ -1,11 +1,14 @@
 #include "measure.h"
 
 #include <BRepBndLib.hxx>
+#include <BRepBuilderAPI_Copy.hxx>
 #include <BRepGProp.hxx>
+#include <BRepMesh_IncrementalMesh.hxx>
 #include <BRep_Tool.hxx>
 #include <GProp_GProps.hxx>
 #include <ShapeAnalysis_ShapeTolerance.hxx>
 #include <Standard_Failure.hxx>
+#include <cmath>
 
 namespace octafront::cad {
 
@@ -13,6 +16,10 @@ namespace {
 
 /// Error of volumes and areas, relative. By a fixed number of Gauss points they are off by up to .6 %.
 constexpr double kIntegral = 1e-6;
+
+/// Of splines with many knots the adaptive rule may end far too early (2 % of an airfoil): where both rules differ by
+/// so much, relative, facets decide, of chords this part of the box deep and turning by so much.
+constexpr double kDoubtful = 1e-3, kDeciding = 1e-4, kDecidingAngle = 0.1;
 
 Box3 box_of(const Bnd_Box& box) {
   Box3 out;
@@ -23,17 +30,28 @@ Box3 box_of(const Bnd_Box& box) {
   return out;
 }
 
+double volume_of_facets(const TopoDS_Shape& solid) {
+  const TopoDS_Shape copy = BRepBuilderAPI_Copy(solid, true, false);
+  BRepMesh_IncrementalMesh(copy, kDeciding * quick_box(solid).diagonal(), false, kDecidingAngle);
+  GProp_GProps properties;
+  BRepGProp::VolumeProperties(copy, properties, false, false, true);
+  return properties.Mass();
+}
+
 }  // namespace
 
 double volume_of(const TopoDS_Shape& solid) {
-  GProp_GProps properties;
+  GProp_GProps fixed, adaptive;
+  BRepGProp::VolumeProperties(solid, fixed);
   try {
-    BRepGProp::VolumeProperties(solid, properties, kIntegral);
+    BRepGProp::VolumeProperties(solid, adaptive, kIntegral);
   } catch (const Standard_Failure&) {
-    properties = {};
-    BRepGProp::VolumeProperties(solid, properties);
+    return fixed.Mass();
   }
-  return properties.Mass();
+  const double a = adaptive.Mass(), f = fixed.Mass();
+  if (std::abs(a - f) <= kDoubtful * std::abs(f)) return a;
+  const double facets = volume_of_facets(solid);
+  return std::abs(a - facets) < std::abs(f - facets) ? a : f;
 }
 
 double area_of(const TopoDS_Shape& shape) {

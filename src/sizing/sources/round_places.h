@@ -14,4 +14,9 @@ namespace octafront {
 SizeAtPlace sizes_in_round_places(const KnownSurface& known, const SurfaceCurvature& curvature,
                                   const std::vector<double>& face, double floor);
 
+/// Sizes where a wall curves, as those of tubes do, and is so thin that facets of the wanted size on both its sides
+/// would cross. As above.
+SizeAtPlace sizes_in_curved_walls(const KnownSurface& known, const SurfaceCurvature& curvature,
+                                  const std::vector<double>& face, double floor);
+
 }  // namespace octafront

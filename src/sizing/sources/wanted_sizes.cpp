@@ -227,20 +227,31 @@ std::vector<SizeSample> samples_of_features(const SurfaceMesh& surface, const Ch
   return feature_samples(surface, curves, choice.feature_elements, choice.floor, choice.base);
 }
 
-/// Of a size that the user gave: where it would lose a thin round body.
+/// Where the body is thin and round: sizes that keep a needle's volume, where the user gave a size, and both sides of a
+/// tube apart.
 SizeAtPlace sizes_of_thin(const KnownSurface& known, const SizeOptions& options, const ShapeLines& lines,
-                          const std::vector<double>& face, const Stage& stage) {
-  if (!options.size) return {};
+                          const std::vector<double>& face, WantedSizes& wanted, const Stage& stage) {
+  if (!options.size && !wanted.automatic) return {};
   const SurfaceCurvature curvature =
       surface_curvature(known.mesh(), smooth_face_neighbours(known.edges(), lines.borders), stage.context());
-  const double floor = std::max(options.min_size.value_or(0), kRoundFloor * *options.size);
-  SizeAtPlace sizes = sizes_in_round_places(known, curvature, face, floor);
-  if (sizes)
-    stage.note(
-        fmt::format("the body is round and thinner than {:.4g} in places: elements are smaller there, or it would lose "
-                    "its volume. `min_size` says how small they may be",
-                    *options.size));
-  return sizes;
+  const double largest = *std::ranges::max_element(face);
+  const double floor = std::max(options.min_size.value_or(0), kRoundFloor * largest);
+  const auto enter = [&](const char* name, const SizeAtPlace& sizes, const char* what, const char* why) {
+    wanted.sources.add(name, sizes);
+    if (sizes)
+      stage.note(
+          fmt::format("{} {:.4g} in places: elements are smaller there, or {}. `min_size` says how small they "
+                      "may be",
+                      what, largest, why));
+    return sizes;
+  };
+  SizeAtPlace round, walls;
+  if (options.size)
+    round = enter("thin round places", sizes_in_round_places(known, curvature, face, floor),
+                  "the body is round and thinner than", "it would lose its volume");
+  walls = enter("thin curved walls", sizes_in_curved_walls(known, curvature, face, floor),
+                "the body has curved walls much thinner than", "their two sides would cross");
+  return least_of(round, walls);
 }
 
 void add_samples(std::vector<SizeSample>& samples, const std::vector<SizeSample>& more) {
@@ -288,13 +299,11 @@ WantedSizes wanted_sizes(const KnownSurface& known, const SizeOptions& options, 
   const std::vector<SizeInSpace> in_space = sizes_in_space(known, options);
   add_samples(wanted.points, samples_inside(known, in_space, least_size, stage.context()));
   wanted.at_place = sizes_at_places(known, choice, options, affordable, in_space, wanted.sources);
-  const SizeAtPlace thin = sizes_of_thin(known, options, lines, wanted.face, stage);
-  wanted.sources.add("thin round places", thin);
-  wanted.at_place = least_of(wanted.at_place, thin);
   const bool is_graded = options.interior == SizeOptions::Interior::kGraded;
   wanted.ceiling = std::max(is_graded ? options.max_size.value_or(HUGE_VAL) : choice.base * scale, least_size);
   const auto [least, most] = std::minmax_element(wanted.face.begin(), wanted.face.end());
   wanted.automatic = choice.automatic && !options.min_size;
+  wanted.at_place = least_of(wanted.at_place, sizes_of_thin(known, options, lines, wanted.face, wanted, stage));
   wanted.even = !wanted.at_place && wanted.points.empty() && *least == *most;
   stage.count("base size", choice.base * scale);
   stage.count("extent", model_extent(surface));

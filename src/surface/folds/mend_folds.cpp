@@ -1,5 +1,6 @@
 #include "surface/folds/mend_folds.h"
 
+#include "base/core/disjoint_sets.h"
 #include "base/core/elementary.h"
 #include "base/geometry/measures.h"
 #include "base/geometry/predicates.h"
@@ -85,10 +86,47 @@ double folding(Vec3 n, Vec3 m) {
   return std::max(0.0, kFold - opening(n, m));
 }
 
+/// What stays fixed: what was, and rims of holes and handles that are smaller than what may move. Collapses around one
+/// cannot end in a point, and half of them leave a tangle: edges so short are joined, and what then has a line around a
+/// hole (an Euler characteristic of 0) keeps its corners. More holes in one are noise, and vertices of round rims may
+/// go.
+std::vector<std::uint8_t> with_small_rims(const WorkingMesh& mesh, const FoldLimits& limits) {
+  std::vector<std::uint8_t> fixed = limits.is_fixed;
+  if (limits.size_part == 0) return fixed;
+  fixed.resize(mesh.points.size(), 0);
+  const auto is_short = [&](HalfEdge h) {
+    const VertexIndex v = mesh.start[h], w = mesh.end(h);
+    const double most = std::min(limits.tolerance, limits.size_part * std::min(mesh.size[v], mesh.size[w]));
+    return squared_length(mesh.points[v] - mesh.points[w]) < most * most;
+  };
+  DisjointSets joined(mesh.points.size());
+  const auto for_each_short = [&](const auto& visit) {
+    for (HalfEdge h = 0; h < mesh.start.size(); ++h)
+      if (!mesh.is_removed(h / 3) && is_short(h)) visit(h);
+  };
+  for_each_short([&](HalfEdge h) { joined.join(mesh.start[h], mesh.end(h)); });
+  std::vector<int> euler(mesh.points.size(), 0);  // by the least vertex
+  std::vector<std::uint8_t> is_counted(mesh.points.size(), 0);
+  for_each_short([&](HalfEdge h) {
+    int& sum = euler[joined.find(mesh.start[h])];
+    for (const VertexIndex v : {mesh.start[h], mesh.end(h)}) sum += is_counted[v] == 0, is_counted[v] = 1;
+    sum -= h < mesh.twin[h];
+    sum += h % 3 == 0 && is_short(h + 1) && is_short(h + 2);
+  });
+  for (VertexIndex v = 0; v < mesh.points.size(); ++v)
+    if (is_counted[v] != 0 && mesh.kind[v] == VertexKind::kCorner && euler[joined.find(v)] == 0) fixed[v] = 1;
+  return fixed;
+}
+
 class FoldMender {
  public:
   FoldMender(WorkingMesh& mesh, const FoldLimits& limits)
-      : mesh_(mesh), limits_(limits), edits_(mesh, limits.is_fixed), sewn_(mesh), live_(sewn_) {
+      : mesh_(mesh),
+        limits_(limits),
+        is_fixed_(with_small_rims(mesh, limits)),
+        edits_(mesh, is_fixed_),
+        sewn_(mesh),
+        live_(sewn_) {
     if (limits.crossing) crosses_ = *limits.crossing;
     crosses_.resize(mesh.triangle_count(), 0);
     result_.moved.resize(mesh.triangle_count(), 0);
@@ -430,6 +468,7 @@ class FoldMender {
 
   WorkingMesh& mesh_;
   const FoldLimits& limits_;
+  const std::vector<std::uint8_t> is_fixed_;
   LineEdits edits_;
   const SewnMesh sewn_;
   LiveTriangles<SewnMesh> live_;

@@ -162,6 +162,31 @@ TEST_F(CadMesh, ACavityStaysEmpty) {
   EXPECT_NEAR(sum, 1000 - 216 + 8, 1e-6);
 }
 
+TEST_F(CadMesh, AWingHasItsVolumeHoweverManyKnotsItsSplinesHave) {
+  const Result made = generate(opened("wing", ".step"));
+  const double volume = volume_of_shape("wing");
+  EXPECT_NEAR(made.report.true_volume, volume, 2e-3 * volume);
+  EXPECT_NEAR(made.report.volume, volume, 5e-3 * volume);
+  EXPECT_GT(made.report.quality.dihedral_min, 10);
+}
+
+TEST_F(CadMesh, ARodIsMeshedWithoutASize) {
+  const std::string file = folder_ / "rod.step";
+  write_shape(shape_named("rod"), file);
+  const Result made = generate(open_domain(file));
+  EXPECT_NEAR(made.report.true_volume, volume_of_shape("rod"), 1e-6);
+  EXPECT_NEAR(made.report.volume, made.report.true_volume, 0.05 * made.report.true_volume);
+  EXPECT_LT(made.mesh.tets.size(), 60'000u);
+}
+
+TEST_F(CadMesh, BothSidesOfAThinTubeStayApart) {
+  const Result made = meshed(opened("thin tube", ".step"));
+  EXPECT_TRUE(has_note(made.report, "their two sides would cross"));
+  EXPECT_NEAR(made.report.volume, volume_of_shape("thin tube"), 0.02 * volume_of_shape("thin tube"));
+  EXPECT_LT(made.mesh.tets.size(), 20'000u);
+  EXPECT_GT(made.report.quality.dihedral_min, 0.2);
+}
+
 TEST_F(CadMesh, FacesArePatchesByTheirNames) {
   const Result made = meshed(opened("box", ".step"));
   const std::set<std::uint32_t> used(made.mesh.patch.begin(), made.mesh.patch.end());

@@ -20,6 +20,7 @@
 #include <BRepTools.hxx>
 #include <BRep_Builder.hxx>
 #include <BinTools.hxx>
+#include <GeomAPI_Interpolate.hxx>
 #include <GeomAPI_PointsToBSpline.hxx>
 #include <Geom_BSplineCurve.hxx>
 #include <Geom_SphericalSurface.hxx>
@@ -32,6 +33,7 @@
 #include <STEPControl_Controller.hxx>
 #include <STEPControl_Writer.hxx>
 #include <TColgp_Array1OfPnt.hxx>
+#include <TColgp_HArray1OfPnt.hxx>
 #include <TopExp_Explorer.hxx>
 #include <TopoDS.hxx>
 #include <TopoDS_Compound.hxx>
@@ -164,6 +166,28 @@ TopoDS_Face under_spline() {
       .Face();
 }
 
+/// A wing of chord 10 and span 4, a NACA 0012 profile that ends in a sharp edge: splines through 41 points each.
+TopoDS_Shape wing() {
+  const auto side = [](double sign) {
+    constexpr int kSteps = 40;
+    const Handle(TColgp_HArray1OfPnt) points = new TColgp_HArray1OfPnt(1, kSteps + 1);
+    for (int i = 0; i <= kSteps; ++i) {
+      const double x = 0.5 * (1 - std::cos(M_PI * i / kSteps));
+      const double y = 0.6 * (0.2969 * std::sqrt(x) + x * (-0.126 + x * (-0.3516 + x * (0.2843 - 0.1036 * x))));
+      (*points)(i + 1) = gp_Pnt(10 * x, i == kSteps ? 0 : 10 * sign * y, 0);
+    }
+    GeomAPI_Interpolate through(points, false, 1e-9);
+    through.Perform();
+    return BRepBuilderAPI_MakeEdge(through.Curve()).Edge();
+  };
+  return BRepPrimAPI_MakePrism(BRepBuilderAPI_MakeFace(BRepBuilderAPI_MakeWire(side(1), side(-1)).Wire()).Face(),
+                               gp_Vec(0, 0, 4));
+}
+
+TopoDS_Shape thin_tube() {
+  return BRepAlgoAPI_Cut(BRepPrimAPI_MakeCylinder(5, 10).Shape(), BRepPrimAPI_MakeCylinder(4.98, 10).Shape()).Shape();
+}
+
 TopoDS_Shape filleted() {
   const TopoDS_Shape box = BRepPrimAPI_MakeBox(10, 10, 10).Shape();
   BRepFilletAPI_MakeFillet fillet(box);
@@ -194,6 +218,9 @@ TopoDS_Shape shape_named(const std::string& name) {
   if (name == "nested faces") return faces_of(nested());
   if (name == "wrong part") return wrong_part();
   if (name == "mostly open") return mostly_open();
+  if (name == "wing") return wing();
+  if (name == "thin tube") return thin_tube();
+  if (name == "rod") return BRepPrimAPI_MakeCylinder(0.15, 10).Shape();
   if (name == "groove") return ball_in_groove();
   throw std::invalid_argument(name);
 }
@@ -204,6 +231,9 @@ double volume_of_shape(const std::string& name) {
   if (name == "cone") return 160 * M_PI / 3;
   if (name == "sphere") return 500 * M_PI / 3;
   if (name == "torus") return 40 * M_PI * M_PI;
+  if (name == "wing") return 480 * (0.2969 * 2 / 3 - 0.126 / 2 - 0.3516 / 3 + 0.2843 / 4 - 0.1036 / 5);
+  if (name == "thin tube") return 10 * M_PI * (25 - 4.98 * 4.98);
+  if (name == "rod") return 0.225 * M_PI;
   return 0;
 }
 

@@ -9,7 +9,7 @@ namespace octafront::testing {
 /// A shape by name, of a side or diameter of about 10: "box", "cylinder", "cone", "sphere", "torus", "revolved",
 /// "extruded", "filleted", "touching", "overlapping", "apart", "within", "nearly", "fitted", "tiny", "three", "groove",
 /// "nested faces",
-/// "instances", "wrong part", "mostly open".
+/// "instances", "wrong part", "mostly open", "wing", "thin tube", "rod".
 TopoDS_Shape shape_named(const std::string& name);
 /// Its volume, by formula; nothing known: 0.
 double volume_of_shape(const std::string& name);

@@ -3,6 +3,7 @@
 #include <octafront/generate.h>
 #include <octafront/validity.h>
 
+#include "support/faceted.h"
 #include "support/named_surfaces.h"
 #include "support/thin_surfaces.h"
 
@@ -63,6 +64,18 @@ TEST(ThinBodies, ANeedleKeepsItsVolumeAndItsElementsAreNotFlat) {
   EXPECT_LT(std::abs(volume_change_of(r.report)), 0.05);
   EXPECT_GT(r.report.quality.dihedral_min, 3);  // at its tip
   EXPECT_LT(r.report.tets, 40'000u);
+}
+
+TEST(ThinBodies, AHoleMuchNarrowerThanElementsKeepsItsCornersAndVolume) {
+  for (const double scale : {1e-3, 1.0, 1e6})
+    for (const double size : {0.1, 0.2, 0.3}) {
+      SCOPED_TRACE(::testing::Message() << size << ' ' << scale);
+      const SurfaceMesh plate = testing::transformed(testing::faceted_ring(4, 7e-4, 1, 0.1), scale, {});
+      const Result r = generate(Domain(plate), thin_of_size(size * scale));
+      EXPECT_LT(std::abs(volume_change_of(r.report)), 5e-6);
+      EXPECT_GT(r.report.quality.dihedral_min, 0.4);
+      EXPECT_LT(r.report.tets, 10'000u);
+    }
 }
 
 TEST(ThinBodies, WhatIsThickHasTheSizeThatWasGiven) {

@@ -1,4 +1,4 @@
-// Sizes where a body is round and thinner than what the user asked for.
+// Sizes where a body is round, or its walls curve, and it is thinner than what the user asked for.
 
 #include "sizing/size_cases.h"
 #include "sizing/sources/surface_samples.h"
@@ -41,9 +41,19 @@ TEST(RoundPlaces, TheLeastSizeIsHeld) {
   EXPECT_GT(sizes_of(testing::rod(24, 0.05, 4), o).min_size(), 0.0999);
 }
 
-TEST(RoundPlaces, FilletsTubesAndWhatIsThickAreNone) {
+TEST(RoundPlaces, ChordsAreNoDeeperThanHalfOfACurvedWall) {
+  for (const double scale : {1e-3, 1.0, 1e6}) {
+    const SurfaceMesh shell = testing::transformed(testing::hollow_sphere(4, 1, 0.99), scale, {});
+    const SizeField sizes = sizes_of(shell, of_size(0.5 * scale));
+    EXPECT_NEAR(sizes.at(scale * Vec3{1, 0, 0}) / scale, 0.2, 0.04);
+    EXPECT_NEAR(sizes.at(scale * Vec3{0, 0, 0.99}) / scale, 0.2, 0.04);
+    EXPECT_GT(sizes_of(shell, of_size(0.15 * scale)).min_size() / scale, 0.149);
+  }
+}
+
+TEST(RoundPlaces, FilletsThickTubesAndWhatIsThickAreNone) {
   EXPECT_GT(sizes_of(testing::icosphere(3), of_size(0.4)).min_size(), 0.399);
-  EXPECT_GT(sizes_of(testing::hollow_sphere(3, 1, 0.98), of_size(0.3)).min_size(), 0.299);
+  EXPECT_GT(sizes_of(testing::hollow_sphere(3, 1, 0.95), of_size(0.3)).min_size(), 0.299);
   const SurfaceMesh plate = testing::box(1, 1, 0.01, 4);
   EXPECT_GT(sizes_of(plate, of_size(0.3), detect_features(plate, 40)).min_size(), 0.299);
 }
