@@ -196,6 +196,8 @@ class Intake {
     if (complex_.overlap == Overlap::kFirst) std::reverse(first, bodies.end());
     complex_.overlap = Overlap::kLater;
     complex_.within_first = true;
+    // A cell cuts what crosses it: its faces and walls that lie beside copies of themselves were not faceted apart.
+    if (!complex_.tolerance) complex_.tolerance = 0;
     std::vector<std::string> notes;
     bodies = bodies_in_cell(std::move(bodies), options_, notes);
     note_all(domain_, options_, "cell", notes);

@@ -163,7 +163,8 @@ class BodyMeeting {
     }
     divide(earlier_, inside_earlier_, divided_earlier);
     divide(later_, inside_later_, divided_later);
-    if (later_.ends.empty()) share_walls(points_, divided_earlier, divided_later, misfits_, context_);
+    const bool was_apart = misfits_.largest() > misfits_.floor();
+    if (was_apart && later_.ends.empty()) share_walls(points_, divided_earlier, divided_later, misfits_, context_);
   }
 
   std::vector<BodyFace> divided_earlier, divided_later;

@@ -187,7 +187,7 @@ TEST_F(Intake, ANetOfNoiseIsKeptBeforeAnyRoundWhereTheBudgetIsSpent) {
 
 TEST_F(Intake, OnlyAutomaticSizesHaveABudgetForVoxels) {
   Options options;
-  EXPECT_EQ(intake_for(options).image.most_elements, 3e6);
+  EXPECT_EQ(intake_for(options).image.most_elements, 1.5e6);
   options.surface.max_deviation = 0.1;
   EXPECT_EQ(intake_for(options).image.most_elements, HUGE_VAL);
   options.surface.max_deviation.reset();
