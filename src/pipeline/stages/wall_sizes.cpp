@@ -4,7 +4,6 @@
 
 #include "base/core/disjoint_sets.h"
 #include "base/mesh/edge_table.h"
-#include "base/mesh/features.h"
 
 #include <algorithm>
 #include <cmath>
@@ -22,22 +21,16 @@ SurfaceMesh walls_of(const TetMesh& mesh) {
   walls.points = mesh.points;
   walls.triangles = mesh.boundary;
   walls.triangles.insert(walls.triangles.end(), mesh.interfaces.begin(), mesh.interfaces.end());
-  walls.patch = mesh.patch;
-  walls.patch.resize(mesh.boundary.size(), 0);
-  walls.patch.insert(walls.patch.end(), mesh.interface_patch.begin(), mesh.interface_patch.end());
-  walls.patch.resize(walls.triangles.size(), 0);
   return walls;
 }
 
-/// Per triangle the least triangle of its smooth piece.
-std::vector<std::uint32_t> smooth_pieces(const SurfaceMesh& walls, double feature_angle) {
+/// Per triangle the least triangle of its piece. A fillet or hole of a body is no body of its own.
+std::vector<std::uint32_t> pieces_of(const SurfaceMesh& walls) {
   const EdgeTable edges = make_edge_table(walls.points.size(), walls.triangles);
-  const Features lines = detect_features(walls, edges, feature_angle);
   DisjointSets pieces(walls.triangles.size());
   for (std::size_t e = 0; e < edges.size(); ++e) {
     const auto uses = edges.uses(e);
-    if (uses.size() == 2 && !std::binary_search(lines.edges.begin(), lines.edges.end(), edges.edges[e]))
-      pieces.join(uses[0] / 3, uses[1] / 3);
+    if (uses.size() == 2) pieces.join(uses[0] / 3, uses[1] / 3);
   }
   std::vector<std::uint32_t> piece(walls.triangles.size());
   for (std::uint32_t t = 0; t < piece.size(); ++t) piece[t] = pieces.find(t);
@@ -50,7 +43,7 @@ std::vector<adapt::ToleranceOfSet> add_wall_sizes(TetMesh& mesh, const Options& 
                                                   double diagonal) {
   if (options.surface.max_deviation || !(tolerance > 0)) return {};
   const SurfaceMesh walls = walls_of(mesh);
-  const std::vector<std::uint32_t> piece = smooth_pieces(walls, options.surface.angle_of_features());
+  const std::vector<std::uint32_t> piece = pieces_of(walls);
   std::vector<Box3> box(piece.size());
   for (std::size_t t = 0; t < piece.size(); ++t)
     for (const VertexIndex v : walls.triangles[t]) box[piece[t]].add(walls.points[v]);
