@@ -6,6 +6,7 @@
 #include "base/core/utf8.h"
 #include "base/core/wording.h"
 #include "base/geometry/measures.h"
+#include "base/geometry/triangle_tree.h"
 #include "base/mesh/complex.h"
 #include "base/mesh/edge_table.h"
 #include "soup/cells/close_gaps.h"
@@ -515,6 +516,85 @@ JoinedWay joined_by(const Misfits& near, Rims rims, const Joining& joining) {
   return way;
 }
 
+/// The walls of a complex that have nothing before them, by the body behind.
+class OpenWalls {
+ public:
+  OpenWalls(const SurfaceMesh& complex, const Misfits& misfits)
+      : complex_(complex), least_(misfits.floor()), open_(misfits.bodies()) {
+    for (std::uint32_t t = 0; t < complex.triangles.size(); ++t) {
+      const Sides sides = complex.sides_of(t);
+      const bool is_open = sides[0] == kNone || sides[1] == kNone;
+      for (const std::uint32_t region : sides) {
+        if (is_open && region < open_.size()) open_[region].push_back(complex.triangles[t]);
+      }
+    }
+  }
+
+  /// Whether they face each other across nothing, no farther apart than `most`.
+  bool leave_a_gap(std::uint32_t a, std::uint32_t b, double most) const {
+    return faces(open_[a], open_[b], most) || faces(open_[b], open_[a], most);
+  }
+
+ private:
+  bool faces(const std::vector<Triangle>& from, const std::vector<Triangle>& to, double most) const {
+    const TriangleTree tree(complex_.points, to);
+    const Vec3 reach{most, most, most};
+    return std::ranges::any_of(from, [&](const Triangle& t) {
+      const Vec3 n = normal(t);
+      return std::ranges::any_of(t, [&](VertexIndex v) {
+        const Vec3 p = complex_.points[v];
+        return !tree.for_each_box_near({p - reach, p + reach}, [&](std::uint32_t u, const TriangleCorners& c) {
+          const Vec3 q = closest_point_on_triangle(p, c[0], c[1], c[2]);
+          return distance(p, q) <= least_ || distance(p, q) > most || !face_each_other(n, normal(to[u]), p - q);
+        });
+      });
+    });
+  }
+  Vec3 normal(const Triangle& t) const {
+    return unit_normal(complex_.points[t[0]], complex_.points[t[1]], complex_.points[t[2]]);
+  }
+
+  const SurfaceMesh& complex_;
+  double least_;
+  std::vector<std::vector<Triangle>> open_;
+};
+
+/// Whether no two bodies whose walls may be meant to be one are left apart.
+bool fit_together(const SurfaceMesh& complex, const Misfits& misfits) {
+  const OpenWalls walls(complex, misfits);
+  return std::ranges::all_of(misfits.all(), [&](const auto& pair) {
+    return !walls.leave_a_gap(pair.first.first, pair.first.second, pair.second);
+  });
+}
+
+/// Whether bodies that come together by so little have their volumes, and so did not overlap.
+bool keep_their_volumes(const Complex& complex, const std::vector<Body>& bodies, double moved) {
+  if (complex.volumes.size() != bodies.size()) return false;
+  for (std::size_t b = 0; b < bodies.size(); ++b) {
+    const SurfaceMesh& body = bodies[b].surface;
+    if (!(std::abs(complex.volumes[b] - std::abs(enclosed_volume(body))) <= moved * area(body))) return false;
+  }
+  return true;
+}
+
+/// Bodies that fit as they are, but for the last digits of their coordinates, as cells of a foam do: there, what looks
+/// like facets of a curve apart from another is a wedge where three cells meet.
+std::optional<JoinedWay> fitting_way(const Joining& joining, double size) {
+  constexpr double kLastDigits = 1e-4;  // of the size
+  const MisfitLimits limits{kLastDigits * size, size};
+  const Together& all = joining.all;
+  const Misfits close({all.points, all.triangles, all.body}, limits, joining.context);
+  try {
+    JoinedWay way = joined_by(close, Rims::kBend, {joining.bodies, joining.options, all, close, joining.context});
+    const Complex& complex = way.joined.complex;
+    if (way.is_sound() && keep_their_volumes(complex, joining.bodies, *limits.tolerance) &&
+        fit_together(complex.surface, joining.misfits))
+      return way;
+  } catch (const InputError&) {
+  }
+  return std::nullopt;
+}
+
 /// Walls of fine facets are best brought together whole. Coarse ones may cross in vain then, and are better left where
 /// they are.
 JoinedWay best_way(const Joining& joining) {
@@ -545,7 +625,11 @@ Joined joined_bodies(const std::vector<Body>& bodies, const ComplexOptions& opti
   Complex before;
   const Together all = put_together(bodies, before, context);
   const Misfits misfits({all.points, all.triangles, all.body}, limits_for(options, elements, bodies), context);
-  JoinedWay best = best_way({bodies, options, all, misfits, context});
+  const Joining joining{bodies, options, all, misfits, context};
+  std::optional<JoinedWay> fitting;
+  if (!options.tolerance && misfits.largest() > misfits.floor())
+    fitting = fitting_way(joining, limits_for(options, elements, bodies).size);
+  JoinedWay best = fitting ? std::move(*fitting) : best_way(joining);
   std::vector<std::string>& notes = best.joined.complex.notes;
   notes.insert(notes.begin(), before.notes.begin(), before.notes.end());
   return std::move(best.joined);

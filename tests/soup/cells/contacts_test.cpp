@@ -4,13 +4,16 @@
 #include <octafront/inside.h>
 
 #include "base/geometry/self_intersection.h"
+#include "base/mesh/complex.h"
 #include "soup/cells/bodies.h"
 #include "support/complexes.h"
+#include "support/convex_cells.h"
 #include "support/faceted.h"
 #include "support/named_surfaces.h"
 
 #include <algorithm>
 #include <cmath>
+#include <random>
 #include <string>
 #include <utility>
 #include <vector>
@@ -227,6 +230,27 @@ TEST(Contacts, WallsFartherApartStay) {
   EXPECT_NEAR(joined_at(plates(1, .1), .2).volumes[1], 1, 1e-12);
   EXPECT_NEAR(joined_at(plates(.02, .01), .2).volumes[1], .02, 1e-12);
   EXPECT_NEAR(joined_at(plates(1, .01), .2).volumes[1], 1.01, 1e-12);
+}
+
+/// Each cell written by itself, with so few digits that its faces are no planes any more and divided in other ways.
+TEST(Contacts, CellsOfAFoamAreThoseThatThereAre) {
+  testing::ConvexCells foam({1, 1, 1});
+  std::mt19937 random(3);
+  std::uniform_real_distribution<double> u(0.02, 0.98);
+  for (int k = 0; k < 12; ++k) foam.insert_site({u(random), u(random), u(random)});
+  const SurfaceMesh complex = foam.complex();
+  std::vector<Body> cells;
+  std::vector<double> volumes;
+  for (std::uint32_t c = 0; c < foam.count(); ++c) {
+    SurfaceMesh cell = boundary_of_region(complex, c);
+    cell.patch.clear(), cell.patch_names.clear();
+    volumes.push_back(enclosed_volume(cell));
+    for (Vec3& p : cell.points)
+      for (int axis = 0; axis < 3; ++axis) p[axis] = std::round(1e6 * p[axis] + 0.3 * (c % 3)) / 1e6;
+    cells.push_back({"cell " + std::to_string(c), cell});
+  }
+  const Complex joined = joined_at(cells, .2);
+  expect_in_contact(joined, volumes, 1e-5);
 }
 
 TEST(Contacts, ASheetThatEndsJustBeforeAWall) {
