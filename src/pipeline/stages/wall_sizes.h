@@ -12,7 +12,8 @@
 namespace octafront {
 
 /// Adds sets of faces to the mesh, for as long as it is adapted, that may stray less than `tolerance`, which is for
-/// walls as large as `diagonal`: those of connected pieces that are less than half, a quarter, ... of that. Where options.surface.max_deviation is given none are.
+/// walls as large as `diagonal`: those of connected pieces that are less than half, a quarter, ... of that. Where
+/// options.surface.max_deviation is given none are.
 std::vector<adapt::ToleranceOfSet> add_wall_sizes(TetMesh& mesh, const Options& options, double tolerance,
                                                   double diagonal);
 
