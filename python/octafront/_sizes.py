@@ -30,7 +30,7 @@ class SizeField:
         return field
 
     @classmethod
-    def read(cls, path, *, gradation=0.12):
+    def read(cls, path, *, gradation=0.4):
         """Reads a grid that save() wrote, edited or not: sizes are cut where they break the gradation."""
         job = Job("read_sizes", file_of(path), float(gradation))
         report = job.run()

@@ -178,7 +178,9 @@ void read_sizes_into(SizeOptions& options, const std::string& named, const RunCo
   } else if (has_field) {
     asked.fail("is a background grid, which is given without the name of a field");
   } else {
-    options.field = read_size_field(asked.name, options.gradation.value_or(kDefaultGradation), context);
+    // A field that was written comes back as it was, unless it was edited: sizes change no faster by themselves.
+    constexpr double kSteepest = 0.4;
+    options.field = read_size_field(asked.name, options.gradation.value_or(kSteepest), context);
   }
 }
 
