@@ -1,5 +1,6 @@
 #include "images/nets/volumes.h"
 
+#include "base/core/conjugate_gradients.h"
 #include "base/core/parallel.h"
 #include "images/nets/diagonals.h"
 
@@ -73,40 +74,15 @@ class LabelMatrix {
   }
   static std::uint32_t key(Label row, Label column) { return std::uint32_t{row} << 16 | column; }
 
-  /// Conjugate gradients, scaled by the diagonal. Where labels fill the image's box the matrix is singular, and the
-  /// right side fits: their volumes have one sum.
-  std::vector<double> solve(std::vector<double> residual) const {
-    constexpr int kMostSteps = 1000;
-    constexpr double kEnough = 1e-6;  // of the first residual; Newton's next step looks at the rest
-    std::vector<double> diagonal(size_, 0), x(size_, 0), p(size_, 0), z(size_);
+  /// Where labels fill the image's box the matrix is singular, and the right side fits: their volumes have one sum.
+  std::vector<double> solve(const std::vector<double>& right) const {
+    // Newton's next step looks at what is left.
+    constexpr SolverLimits kSolved{.steps = 1000, .enough = 1e-12};
+    std::vector<double> diagonal(size_, 0);
     for (const Entry& e : entries_)
       if (e.row == e.column) diagonal[e.row] = e.value;
-    const auto scale = [&] {
-      for (std::size_t i = 0; i < size_; ++i) z[i] = diagonal[i] > 0 ? residual[i] / diagonal[i] : 0;
-    };
-    const auto product = [&](const std::vector<double>& a, const std::vector<double>& b) {
-      double sum = 0;
-      for (std::size_t i = 0; i < size_; ++i) sum += a[i] * b[i];
-      return sum;
-    };
-    scale();
-    double rz = product(residual, z), beta = 0;
-    const double enough = rz * kEnough * kEnough;
-    for (int step = 0; step < kMostSteps && rz > enough; ++step) {
-      for (std::size_t i = 0; i < size_; ++i) p[i] = z[i] + beta * p[i];
-      const std::vector<double> ap = times(p);
-      const double curve = product(p, ap);
-      if (!(curve > 0)) break;
-      for (std::size_t i = 0; i < size_; ++i) {
-        x[i] += rz / curve * p[i];
-        residual[i] -= rz / curve * ap[i];
-      }
-      scale();
-      const double next = product(residual, z);
-      beta = next / rz;
-      rz = next;
-    }
-    return x;
+    return solved_by_conjugate_gradients(
+        diagonal, right, [&](const std::vector<double>& x) { return times(x); }, kSolved);
   }
 
  private:

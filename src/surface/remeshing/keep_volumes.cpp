@@ -1,5 +1,6 @@
 #include "surface/remeshing/keep_volumes.h"
 
+#include "base/core/conjugate_gradients.h"
 #include "base/core/groups.h"
 #include "base/mesh/complex.h"
 #include "surface/check/surface_check.h"
@@ -20,8 +21,7 @@ constexpr int kVolumeSteps = 6;
 constexpr double kVolumeReached = 1e-4;
 constexpr int kRoundsBack = 8, kHalves = 3;  // of these rounds so many go back half the way
 constexpr double kSamePlane = 1e-10;         // what cosines of equal normals may lack of 1
-constexpr int kMostSolverSteps = 400;
-constexpr double kSolved = 1e-12;  // of the first residual, squared
+constexpr SolverLimits kSolved{.steps = 400, .enough = 1e-12};
 
 /// What a vertex adds to the volumes of the regions around it.
 struct Gradient {
@@ -44,41 +44,17 @@ struct Gradient {
   }
 };
 
-/// By conjugate gradients, scaled by the diagonal: the pressures that change volumes by `missing`. Regions that nothing
-/// moves have a row of zeros, and none.
+/// The pressures that change volumes by `missing`. Regions that nothing moves have a row of zeros, and none.
 class PressureSolver {
  public:
   explicit PressureSolver(const std::vector<Gradient>& gradients) : gradients_(gradients) {}
 
-  std::vector<double> solve(std::vector<double> missing) const {
-    const std::size_t n = missing.size();
-    std::vector<double> x(n, 0), p(n, 0), z(n), diagonal = diagonal_of(n);
-    const auto scale = [&] {
-      for (std::size_t i = 0; i < n; ++i) z[i] = diagonal[i] > 0 ? missing[i] / diagonal[i] : 0;
-    };
-    scale();
-    double rz = product(missing, z), beta = 0;
-    const double enough = kSolved * rz;
-    for (int step = 0; step < kMostSolverSteps && rz > enough; ++step) {
-      for (std::size_t i = 0; i < n; ++i) p[i] = z[i] + beta * p[i];
-      const std::vector<double> change = change_by(p);
-      const double curve = product(p, change);
-      if (!(curve > 0)) break;
-      for (std::size_t i = 0; i < n; ++i) x[i] += rz / curve * p[i], missing[i] -= rz / curve * change[i];
-      scale();
-      const double next = product(missing, z);
-      beta = next / rz;
-      rz = next;
-    }
-    return x;
+  std::vector<double> solve(const std::vector<double>& missing) const {
+    return solved_by_conjugate_gradients(
+        diagonal_of(missing.size()), missing, [&](const std::vector<double>& p) { return change_by(p); }, kSolved);
   }
 
  private:
-  static double product(const std::vector<double>& a, const std::vector<double>& b) {
-    double sum = 0;
-    for (std::size_t i = 0; i < a.size(); ++i) sum += a[i] * b[i];
-    return sum;
-  }
   std::vector<double> diagonal_of(std::size_t regions) const {
     std::vector<double> diagonal(regions, 0);
     for (const Gradient& g : gradients_)
