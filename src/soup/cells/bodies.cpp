@@ -6,12 +6,11 @@
 #include "base/core/utf8.h"
 #include "base/core/wording.h"
 #include "base/geometry/measures.h"
-#include "base/geometry/triangle_tree.h"
 #include "base/mesh/complex.h"
-#include "base/mesh/edge_table.h"
 #include "soup/cells/close_gaps.h"
 #include "soup/cells/dissolve.h"
 #include "soup/cells/labelled.h"
+#include "soup/cells/wall_shape.h"
 
 #include <algorithm>
 #include <cmath>
@@ -421,37 +420,13 @@ struct Joining {
   const RunContext& context;
 };
 
-/// The sine of 20 degrees: wider wedges are none.
-constexpr double kWide = 0.34;
-
 /// The bodies as one complex, and how well their walls have come together.
 struct JoinedWay {
   Joined joined;
   std::uint64_t crossings = 0;
-  double shortest = HUGE_VAL;  ///< edge
-  double narrowest = kWide;    ///< sine of a wedge, up to that
-  /// Short edges and narrow wedges are what elements suffer from.
-  double worth() const { return shortest * narrowest; }
-  bool is_sound() const { return crossings == 0 && narrowest >= kWide; }
+  WallShape shape;
+  bool is_sound() const { return crossings == 0 && shape.has_no_wedge(); }
 };
-
-void measure(const SurfaceMesh& surface, JoinedWay& way) {
-  const EdgeTable table = make_edge_table(surface.points.size(), surface.triangles);
-  for (std::size_t e = 0; e < table.size(); ++e) {
-    const Vec3 p = surface.points[table.edges[e][0]], q = surface.points[table.edges[e][1]];
-    way.shortest = std::min(way.shortest, distance(p, q));
-    const Vec3 along = normalized(q - p);
-    std::vector<Vec3> sides;
-    for (const HalfEdge h : table.uses(e)) {
-      const Triangle& t = surface.triangles[h / 3];
-      const Vec3 side = surface.points[t[(h % 3 + 2) % 3]] - p;
-      sides.push_back(normalized(side - dot(side, along) * along));
-    }
-    for (std::size_t i = 0; i < sides.size(); ++i)
-      for (std::size_t j = 0; j < i; ++j)
-        if (dot(sides[i], sides[j]) > 0) way.narrowest = std::min(way.narrowest, length(cross(sides[i], sides[j])));
-  }
-}
 
 /// Walls that are `near` come together; what lies between others that belong together is given away as slivers.
 JoinedWay joined_by(const Misfits& near, Rims rims, const Joining& joining) {
@@ -485,8 +460,6 @@ JoinedWay joined_by(const Misfits& near, Rims rims, const Joining& joining) {
   Patches patches(bodies);
   Complex complex = complex_of(labelled, [&](std::size_t t, Sides sides) {
     const std::uint32_t face = closed.source[arranged.origins_of(t)[0].triangle];
-    std::vector<std::uint32_t> around;
-    for (const Origin& o : arranged.origins_of(t)) around.push_back(body_of[o.triangle]);
     std::string others;
     if (sides[0] != kNone) {
       // The other side's region, unless that is the body itself.
@@ -511,60 +484,8 @@ JoinedWay joined_by(const Misfits& near, Rims rims, const Joining& joining) {
   note_common_regions(labelled, bodies.size(), end_of_common, notes);
   notes.insert(notes.end(), complex.notes.begin(), complex.notes.end());
   complex.notes = std::move(notes);
-  JoinedWay way{{std::move(complex), are_nested(windings)}, arranged.new_points};
-  measure(way.joined.complex.surface, way);
-  return way;
-}
-
-/// The walls of a complex that have nothing before them, by the body behind.
-class OpenWalls {
- public:
-  OpenWalls(const SurfaceMesh& complex, const Misfits& misfits)
-      : complex_(complex), least_(misfits.floor()), open_(misfits.bodies()) {
-    for (std::uint32_t t = 0; t < complex.triangles.size(); ++t) {
-      const Sides sides = complex.sides_of(t);
-      const bool is_open = sides[0] == kNone || sides[1] == kNone;
-      for (const std::uint32_t region : sides) {
-        if (is_open && region < open_.size()) open_[region].push_back(complex.triangles[t]);
-      }
-    }
-  }
-
-  /// Whether they face each other across nothing, no farther apart than `most`.
-  bool leave_a_gap(std::uint32_t a, std::uint32_t b, double most) const {
-    return faces(open_[a], open_[b], most) || faces(open_[b], open_[a], most);
-  }
-
- private:
-  bool faces(const std::vector<Triangle>& from, const std::vector<Triangle>& to, double most) const {
-    const TriangleTree tree(complex_.points, to);
-    const Vec3 reach{most, most, most};
-    return std::ranges::any_of(from, [&](const Triangle& t) {
-      const Vec3 n = normal(t);
-      return std::ranges::any_of(t, [&](VertexIndex v) {
-        const Vec3 p = complex_.points[v];
-        return !tree.for_each_box_near({p - reach, p + reach}, [&](std::uint32_t u, const TriangleCorners& c) {
-          const Vec3 q = closest_point_on_triangle(p, c[0], c[1], c[2]);
-          return distance(p, q) <= least_ || distance(p, q) > most || !face_each_other(n, normal(to[u]), p - q);
-        });
-      });
-    });
-  }
-  Vec3 normal(const Triangle& t) const {
-    return unit_normal(complex_.points[t[0]], complex_.points[t[1]], complex_.points[t[2]]);
-  }
-
-  const SurfaceMesh& complex_;
-  double least_;
-  std::vector<std::vector<Triangle>> open_;
-};
-
-/// Whether no two bodies whose walls may be meant to be one are left apart.
-bool fit_together(const SurfaceMesh& complex, const Misfits& misfits) {
-  const OpenWalls walls(complex, misfits);
-  return std::ranges::all_of(misfits.all(), [&](const auto& pair) {
-    return !walls.leave_a_gap(pair.first.first, pair.first.second, pair.second);
-  });
+  const WallShape shape = shape_of_walls(complex.surface);
+  return {{std::move(complex), are_nested(windings)}, arranged.new_points, shape};
 }
 
 /// Whether bodies that come together by so little have their volumes, and so did not overlap.
@@ -588,7 +509,7 @@ std::optional<JoinedWay> fitting_way(const Joining& joining, double size) {
     JoinedWay way = joined_by(close, Rims::kBend, {joining.bodies, joining.options, all, close, joining.context});
     const Complex& complex = way.joined.complex;
     if (way.is_sound() && keep_their_volumes(complex, joining.bodies, *limits.tolerance) &&
-        fit_together(complex.surface, joining.misfits))
+        !leave_gaps(complex.surface, joining.misfits))
       return way;
   } catch (const InputError&) {
   }
@@ -596,17 +517,19 @@ std::optional<JoinedWay> fitting_way(const Joining& joining, double size) {
 }
 
 /// Walls of fine facets are best brought together whole. Coarse ones may cross in vain then, and are better left where
-/// they are.
-JoinedWay best_way(const Joining& joining) {
+/// they are. `size`: of elements to come.
+JoinedWay best_way(const Joining& joining, double size) {
   const Misfits& misfits = joining.misfits;
-  const Misfits apart = misfits.without_contacts();
   if (misfits.largest() <= misfits.floor()) return joined_by(misfits, Rims::kBend, joining);
+  if (!joining.options.tolerance)
+    if (std::optional<JoinedWay> fitting = fitting_way(joining, size)) return std::move(*fitting);
+  const Misfits apart = misfits.without_contacts();
   std::optional<JoinedWay> best;
   for (const auto& [near, rims] : {std::pair{&misfits, Rims::kBend}, {&misfits, Rims::kKeep}, {&apart, Rims::kBend}}) {
     const bool is_last = near == &apart;
     try {
       JoinedWay way = joined_by(*near, rims, joining);
-      if (!best || way.worth() > best->worth()) best = std::move(way);
+      if (!best || way.shape.worth() > best->shape.worth()) best = std::move(way);
     } catch (const InputError&) {
       if (is_last && !best) throw;
     }
@@ -624,12 +547,9 @@ Joined joined_bodies(const std::vector<Body>& bodies, const ComplexOptions& opti
     throw OptionError(fmt::format("`tolerance` is {}; it must not be below 0", *options.tolerance));
   Complex before;
   const Together all = put_together(bodies, before, context);
-  const Misfits misfits({all.points, all.triangles, all.body}, limits_for(options, elements, bodies), context);
-  const Joining joining{bodies, options, all, misfits, context};
-  std::optional<JoinedWay> fitting;
-  if (!options.tolerance && misfits.largest() > misfits.floor())
-    fitting = fitting_way(joining, limits_for(options, elements, bodies).size);
-  JoinedWay best = fitting ? std::move(*fitting) : best_way(joining);
+  const MisfitLimits limits = limits_for(options, elements, bodies);
+  const Misfits misfits({all.points, all.triangles, all.body}, limits, context);
+  JoinedWay best = best_way({bodies, options, all, misfits, context}, limits.size);
   std::vector<std::string>& notes = best.joined.complex.notes;
   notes.insert(notes.begin(), before.notes.begin(), before.notes.end());
   return std::move(best.joined);
