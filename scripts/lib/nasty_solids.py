@@ -260,13 +260,15 @@ def gear(rng):
     return prism(ring, log_between(rng, 0.01, 1))
 
 
+def star_ring(points, inner):
+    """A star of so many points, in the unit circle."""
+    radii = [inner if k % 2 else 1.0 for k in range(2 * points)]
+    return [(r * math.cos(math.pi * k / points), r * math.sin(math.pi * k / points)) for k, r in enumerate(radii)]
+
+
 def star(rng):
     points, inner = rng.randint(3, 24), log_between(rng, 0.02, 0.5)
-    ring = []
-    for k in range(2 * points):
-        a, r = math.pi * k / points, inner if k % 2 else 1.0
-        ring.append((r * math.cos(a), r * math.sin(a)))
-    return prism(ring, log_between(rng, 0.01, 1))
+    return prism(star_ring(points, inner), log_between(rng, 0.01, 1))
 
 
 def star_pyramid(rng):

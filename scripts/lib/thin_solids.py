@@ -6,7 +6,7 @@ import itertools
 import math
 import random
 
-from nasty_solids import Solid, log_between, prism, rotated, scaled, sphere, together, turned, turned_inside_out, moved
+from nasty_solids import Solid, log_between, prism, rotated, scaled, sphere, star_ring, together, turned, turned_inside_out, moved
 
 # ------------------------------------------------------------------------------------------------- building blocks
 
@@ -282,11 +282,7 @@ def snowflake(rng):
 
 def deep_star(rng):
     points, inner = rng.randint(5, 24), log_between(rng, 0.02, 0.2)
-    ring = []
-    for k in range(2 * points):
-        a, r = math.pi * k / points, inner if k % 2 else 1.0
-        ring.append((r * math.cos(a), r * math.sin(a)))
-    return prism(ring, rng.uniform(0.5, 4))
+    return prism(star_ring(points, inner), rng.uniform(0.5, 4))
 
 
 FAMILIES = {f.__name__: f for f in (
