@@ -15,6 +15,7 @@
 #include <cmath>
 #include <limits>
 #include <memory>
+#include <optional>
 #include <string>
 #include <utility>
 
@@ -187,19 +188,39 @@ SizeAtPlace sizes_at_places(const KnownSurface& surface, const Choice& choice, c
   return least_of(least_of(gap, through), least_of(given, least_at_places(in_space, least)));
 }
 
+/// How a surface bends, found once and only if somebody asks.
+class Bends {
+ public:
+  Bends(const KnownSurface& known, const std::vector<Edge>& borders, const RunContext& context)
+      : known_(known), borders_(borders), context_(context) {}
+
+  const FaceNeighbours& across() {
+    if (!across_) across_ = smooth_face_neighbours(known_.edges(), borders_);
+    return *across_;
+  }
+  const SurfaceCurvature& curvature() {
+    if (!curvature_) curvature_ = surface_curvature(known_.mesh(), across(), context_);
+    return *curvature_;
+  }
+
+ private:
+  const KnownSurface& known_;
+  const std::vector<Edge>& borders_;
+  const RunContext& context_;
+  std::optional<FaceNeighbours> across_;
+  std::optional<SurfaceCurvature> curvature_;
+};
+
 /// What facets and curvature ask of faces. Returns what all sizes are to be multiplied by for the volume.
-double apply_shape(const KnownSurface& known, const Choice& choice, const SizeOptions& options, const FaceRules& rules,
-                   const ShapeLines& lines, const Affordable& affordable, const RunContext& context,
-                   std::vector<double>& face, SourceShares& sources) {
+double apply_shape(const SurfaceMesh& surface, const Choice& choice, const SizeOptions& options, const FaceRules& rules,
+                   Bends& bends, const Affordable& affordable, std::vector<double>& face, SourceShares& sources) {
   const bool limits_chords = options.chord_error || !rules.chord_errors.empty();
   const bool needs_curvature = choice.curvature > 0 || limits_chords;
   if (!options.facets && !needs_curvature) return 1;
-  const SurfaceMesh& surface = known.mesh();
-  const FaceNeighbours across = smooth_face_neighbours(known.edges(), lines.borders);
-  if (options.facets) apply_facets(surface, across, choice.floor, face);
+  if (options.facets) apply_facets(surface, bends.across(), choice.floor, face);
   sources.changed("`facets`", face);
   if (!needs_curvature) return 1;
-  const SurfaceCurvature curvature = surface_curvature(surface, across, context);
+  const SurfaceCurvature& curvature = bends.curvature();
   refuse_huge_curvature(affordable, options, curvature);
   const auto error_of = [&](std::size_t f) {
     return std::min(options.chord_error.value_or(HUGE_VAL),
@@ -229,11 +250,11 @@ std::vector<SizeSample> samples_of_features(const SurfaceMesh& surface, const Ch
 
 /// Where the body is thin and round: sizes that keep a needle's volume, where the user gave a size, and both sides of a
 /// tube apart.
-SizeAtPlace sizes_of_thin(const KnownSurface& known, const SizeOptions& options, const ShapeLines& lines,
-                          const std::vector<double>& face, WantedSizes& wanted, const Stage& stage) {
+SizeAtPlace sizes_of_thin(const KnownSurface& known, const SizeOptions& options, Bends& bends, WantedSizes& wanted,
+                          const Stage& stage) {
   if (!options.size && !wanted.automatic) return {};
-  const SurfaceCurvature curvature =
-      surface_curvature(known.mesh(), smooth_face_neighbours(known.edges(), lines.borders), stage.context());
+  const SurfaceCurvature& curvature = bends.curvature();
+  const std::vector<double>& face = wanted.face;
   const double largest = *std::ranges::max_element(face);
   const double floor = std::max(options.min_size.value_or(0), kRoundFloor * largest);
   const auto enter = [&](const char* name, const SizeAtPlace& sizes, const char* what, const char* why) {
@@ -245,12 +266,12 @@ SizeAtPlace sizes_of_thin(const KnownSurface& known, const SizeOptions& options,
                       what, largest, why));
     return sizes;
   };
-  SizeAtPlace round, walls;
+  SizeAtPlace round;
   if (options.size)
     round = enter("thin round places", sizes_in_round_places(known, curvature, face, floor),
                   "the body is round and thinner than", "it would lose its volume");
-  walls = enter("thin curved walls", sizes_in_curved_walls(known, curvature, face, floor),
-                "the body has curved walls much thinner than", "their two sides would cross");
+  const SizeAtPlace walls = enter("thin curved walls", sizes_in_curved_walls(known, curvature, face, floor),
+                                  "the body has curved walls much thinner than", "their two sides would cross");
   return least_of(round, walls);
 }
 
@@ -281,11 +302,12 @@ WantedSizes wanted_sizes(const KnownSurface& known, const SizeOptions& options, 
   const Choice choice = choose(surface, options, rules);
   const Affordable affordable(surface, options);
   const ShapeLines lines = lines_of_shape(known, rules.is_invented);
+  Bends bends(known, lines.borders, stage.context());
   WantedSizes wanted;
   wanted.face.assign(surface.triangles.size(), choice.base);
   wanted.sources.begin(name_of_base(options, choice.base), wanted.face);
   const double scale =
-      apply_shape(known, choice, options, rules, lines, affordable, stage.context(), wanted.face, wanted.sources);
+      apply_shape(known.mesh(), choice, options, rules, bends, affordable, wanted.face, wanted.sources);
   wanted.points = samples_of_features(surface, choice, options, lines.features, affordable);
   const NamedSizes named = named_sizes(known, options);
   for (std::size_t f = 0; f < named.face.size(); ++f) wanted.face[f] = std::min(wanted.face[f], named.face[f] / scale);
@@ -303,7 +325,7 @@ WantedSizes wanted_sizes(const KnownSurface& known, const SizeOptions& options, 
   wanted.ceiling = std::max(is_graded ? options.max_size.value_or(HUGE_VAL) : choice.base * scale, least_size);
   const auto [least, most] = std::minmax_element(wanted.face.begin(), wanted.face.end());
   wanted.automatic = choice.automatic && !options.min_size;
-  wanted.at_place = least_of(wanted.at_place, sizes_of_thin(known, options, lines, wanted.face, wanted, stage));
+  wanted.at_place = least_of(wanted.at_place, sizes_of_thin(known, options, bends, wanted, stage));
   wanted.even = !wanted.at_place && wanted.points.empty() && *least == *most;
   stage.count("base size", choice.base * scale);
   stage.count("extent", model_extent(surface));
