@@ -571,6 +571,10 @@ void declare_surface(CLI::App& command, Arguments& a) {
       ->add_option("--normal-deviation", o.normal_deviation,
                    "Smaller elements where triangles would turn by more degrees against the input [none]")
       ->type_name("DEG");
+  using Strips = SurfaceOptions::Strips;
+  add_choice<Strips>(
+      *group, "--strips", o.strips, {{"fine", Strips::kFine}, {"off", Strips::kOff}},
+      "fine: smaller elements where two feature edges run side by side nearer than an element; off: flat ones");
   group->add_flag("--patches", o.patches_by_features,
                   "Each part of the surface that feature edges enclose becomes a patch");
   group->add_flag("--keep-volumes", o.keep_volumes,

@@ -97,7 +97,8 @@ void write_size_field(const std::string& file, const SizeField& sizes, const Run
 
 /// Reads such a file, edited or not: sizes are cut where they break the gradation. For SizeOptions::field. Throws
 /// InputError, and OptionError for a gradation out of range.
-SizeField read_size_field(const std::string& file, double gradation = 0.12, const RunContext& context = {});
+SizeField read_size_field(const std::string& file, double gradation = kSteepestGradation,
+                          const RunContext& context = {});
 
 /// Reads regions of refinement from a JSON file,
 ///   [{"box": [[0, 0, 0], [1, 2, 1]], "size": 0.1}, {"sphere": [5, 0, 0], "radius": 2, "size": 0.2},

@@ -62,8 +62,8 @@ struct SizeMesh {
   std::string name;                   ///< for messages: the file and its field
 };
 
-/// How fast sizes change where nobody says otherwise.
-inline constexpr double kDefaultGradation = 0.12;
+/// How fast sizes change where nobody says otherwise, and at most where their spread decides.
+inline constexpr double kDefaultGradation = 0.12, kSteepestGradation = 0.4;
 
 /// Where element sizes come from. Every source is optional; the smallest size wins. With none the size is automatic
 /// (make_size_field); `size`, `point_sizes`, `mesh` and `callback` switch that off: they decide alone, up to limits,
@@ -86,8 +86,8 @@ struct SizeOptions {
   /// chooses the sizes. In [0.1, 10].
   double automatic_factor = 1;
   /// |h(x) - h(y)| <= gradation |x - y|; in [0.01, 1]. Without a value it follows from how sizes are spread: the least
-  /// from kDefaultGradation to .4 that leaves at most 30 % of the elements where sizes only rise from smaller ones. Of
-  /// kept surfaces it is kDefaultGradation.
+  /// from kDefaultGradation to kSteepestGradation that leaves at most 30 % of the elements where sizes only rise from
+  /// smaller ones. Of kept surfaces, and with `elements`, it is kDefaultGradation.
   std::optional<double> gradation;
   enum class Interior { kUniform, kGraded };
   /// kUniform: sizes inside stay at most the largest size on the surface (the paper's Cmax).
@@ -127,6 +127,10 @@ struct SurfaceOptions {
   /// By how many degrees new triangles may turn against the input's surface at their corners and centroid: where they
   /// turn farther, sizes are made smaller, too; (0, 90].
   std::optional<double> normal_deviation;
+  enum class Strips { kOff, kFine };
+  /// kFine: where two feature edges run side by side nearer than an element, sizes are smaller, down to .3 of what they
+  /// are (.1 of a complex), for triangles between them have a good shape only then. kOff: they are as they come.
+  Strips strips = Strips::kFine;
   /// Each part of the surface that feature edges enclose becomes a patch of its own; parts of a named patch keep its
   /// name, with a number behind it where there are several.
   bool patches_by_features = false;

@@ -179,8 +179,7 @@ void read_sizes_into(SizeOptions& options, const std::string& named, const RunCo
     asked.fail("is a background grid, which is given without the name of a field");
   } else {
     // A field that was written comes back as it was, unless it was edited: sizes change no faster by themselves.
-    constexpr double kSteepest = 0.4;
-    options.field = read_size_field(asked.name, options.gradation.value_or(kSteepest), context);
+    options.field = read_size_field(asked.name, options.gradation.value_or(kSteepestGradation), context);
   }
 }
 

@@ -80,6 +80,7 @@ std::vector<Row<Options>> surface_rows() {
                      std::string_view tasks = "mesh surface size") {
     return about(name, field.empty() ? name : field, "Surface", tasks, help);
   };
+  using Strips = SurfaceOptions::Strips;
   return {
       row(
           of("keep_surface", "The input triangles become the boundary, exactly", "keep"),
@@ -99,6 +100,10 @@ std::vector<Row<Options>> surface_rows() {
           of("normal_deviation",
              "Smaller elements where triangles would turn by more degrees against the input; at most 90"),
           [](auto& o) -> auto& { return o.surface.normal_deviation; }),
+      choice<Strips>(
+          of("strips",
+             "fine: smaller elements where two feature edges run side by side nearer than an element; off: flat ones"),
+          [](auto& o) -> auto& { return o.surface.strips; }, {{"fine", Strips::kFine}, {"off", Strips::kOff}}),
       row(
           of("patches", "Each part of the surface that feature edges enclose becomes a patch", "patches_by_features"),
           [](auto& o) -> auto& { return o.surface.patches_by_features; }),

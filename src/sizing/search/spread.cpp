@@ -12,7 +12,7 @@ namespace octafront {
 namespace {
 
 /// What is chosen from: above, elements in between lose more than their number saves.
-constexpr std::array kGradations{kDefaultGradation, 0.15, 0.2, 0.25, 0.3, 0.4};
+constexpr std::array kGradations{kDefaultGradation, 0.15, 0.2, 0.25, 0.3, kSteepestGradation};
 /// Sizes that rise so fast are everywhere about what is asked for there.
 constexpr double kAtOnce = 4;
 /// The part of elements that may lie where sizes only rise.

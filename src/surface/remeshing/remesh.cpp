@@ -32,6 +32,9 @@ constexpr double kWornOut = 10;
 /// more elements than it has.
 constexpr double kMostTriangles = 0.3;
 
+/// Strips that make this part of the elements are worth a word.
+constexpr double kMuchForStrips = 0.25;
+
 /// How much of the input's triangulation an attempt may change.
 enum class Effort { kFull, kInsertOnly };
 
@@ -107,6 +110,26 @@ class Remesher {
     return rules;
   }
 
+  /// The sizes of now, smaller where lines lie near to each other.
+  SizeField fine_in_strips() {
+    if (work_.options.strips == SurfaceOptions::Strips::kOff) return sizes_.now();
+    const auto finer = fitted_to_strips(kind_.input(), sizes_.now(), strips(), work_.stage.context());
+    if (!finer) return sizes_.now();
+    if (work_.counts.rounds == 1) tell_strips(*finer);
+    return *finer;
+  }
+
+  void tell_strips(const SizeField& finer) {
+    const double without = work_.budget.expected(sizes_.now());
+    const double part = 1 - std::min(1.0, without / work_.budget.expected(finer));
+    work_.stage.count("made for strips, % of the elements", 100 * part);
+    if (part < kMuchForStrips) return;
+    work_.stage.note(
+        fmt::format("strips between feature edges ask for sizes down to {:.3g} and make about {:.2g} % of "
+                    "the elements: `strips` off, or `min_size`, saves them",
+                    finer.min_size(), 100 * part));
+  }
+
   /// The input with the points of the front in it.
   Draft with_all_points() {
     const RunContext& context = work_.stage.context();
@@ -114,7 +137,7 @@ class Remesher {
     InputSurface& input = kind_.input();
     set_features(input, {});  // no walk crosses seams
     set_features(input, features_at_scale(input, kind_.features(), sizes_.now()));
-    const SizeField in_strips = fitted_to_strips(input, sizes_.now(), strips(), context);
+    const SizeField in_strips = fine_in_strips();
     std::vector<std::uint8_t> is_fixed = mark_kept_places(input, work_.known.tree(), sizes_.kept_places());
     SizeField sizes = work_.budget.affordable(kind_.fitted(in_strips, is_fixed), sizes_.first(), counts.rounds);
     std::vector<Curve> curves = kind_.curves(sizes, is_fixed);

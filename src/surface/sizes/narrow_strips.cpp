@@ -91,8 +91,8 @@ std::vector<Narrow> narrow_places(const InputSurface& input, const SizeField& si
 
 }  // namespace
 
-SizeField fitted_to_strips(const InputSurface& input, const SizeField& sizes, const StripRules& rules,
-                           const RunContext& context) {
+std::optional<SizeField> fitted_to_strips(const InputSurface& input, const SizeField& sizes, const StripRules& rules,
+                                          const RunContext& context) {
   const HalfEdgeMesh& mesh = input.mesh;
   std::vector<HalfEdge> sides;
   for (HalfEdge h = 0; h < mesh.start.size(); ++h) {
@@ -114,6 +114,7 @@ SizeField fitted_to_strips(const InputSurface& input, const SizeField& sizes, co
       kept.add(p, size);
     }
   }
+  if (places.empty()) return {};
   return capped_at(sizes, places, context, {.gradation = rules.gradation});
 }
 

@@ -9,6 +9,8 @@
 
 #include "surface/ground/walk.h"
 
+#include <optional>
+
 namespace octafront::remeshing {
 
 /// What a strip is, and what becomes of sizes there.
@@ -30,8 +32,8 @@ inline constexpr StripRules kStripsOfWalls{
 
 /// The sizes made smaller in narrow strips: where two feature lines run side by side, nearer to each other than about
 /// half an element, triangles between them can be well shaped only if the lines are divided finer. Needs `input` with
-/// feature marks. Returns `sizes` itself where there is no such strip.
-SizeField fitted_to_strips(const InputSurface& input, const SizeField& sizes, const StripRules& rules,
-                           const RunContext& context);
+/// feature marks. Empty where there is no such strip.
+std::optional<SizeField> fitted_to_strips(const InputSurface& input, const SizeField& sizes, const StripRules& rules,
+                                          const RunContext& context);
 
 }  // namespace octafront::remeshing

@@ -97,9 +97,9 @@ SurfaceMesh box(double x, double y, double z) {
   return s;
 }
 
-Remeshed remesh(const SurfaceMesh& surface, double h) {
+Remeshed remesh(const SurfaceMesh& surface, double h, const SurfaceOptions& options = {}) {
   StageReport report;
-  return remesh_surface(KnownSurface(surface, 40), SizeField::uniform(h), {}, {{}, report});
+  return remesh_surface(KnownSurface(surface, 40), SizeField::uniform(h), options, {{}, report});
 }
 
 /// Two spheres, one inside the other, closer than the elements are long.
@@ -377,6 +377,15 @@ TEST(Remesh, DividesTheLinesOfNarrowStripsFiner) {
   EXPECT_GT(least, 0.4);
   EXPECT_NEAR(r.sizes.at({0, 0.5, 0.01}), 0.03, 0.005);
   EXPECT_NEAR(r.sizes.at({1, 1, 0.01}), 0.1, 0.005) << "far from the rim nothing changes";
+}
+
+TEST(Remesh, LeavesStripsAsTheyComeWhereTold) {
+  SurfaceOptions options;
+  options.strips = SurfaceOptions::Strips::kOff;
+  const SurfaceMesh plate = box(2, 2, 0.02);
+  const Remeshed coarse = remesh(plate, 0.1, options);
+  EXPECT_EQ(coarse.sizes.at({0, 0.5, 0.01}), 0.1);
+  EXPECT_LT(2 * coarse.surface.triangles.size(), remesh(plate, 0.1).surface.triangles.size());
 }
 
 TEST(Remesh, PointsOfLinesSideBySideFaceEachOther) {
