@@ -498,6 +498,15 @@ bool keep_their_volumes(const Complex& complex, const std::vector<Body>& bodies,
   return true;
 }
 
+/// Whether edges became much shorter than all that were given, as where bodies end a little deeper in each other.
+bool has_new_short_edges(const JoinedWay& way, const Together& all) {
+  constexpr double kMuchShorter = 0.5;
+  double given = HUGE_VAL;
+  for (const Triangle& t : all.triangles)
+    for (int i = 0; i < 3; ++i) given = std::min(given, distance(all.points[t[i]], all.points[t[(i + 1) % 3]]));
+  return way.shape.shortest < kMuchShorter * given;
+}
+
 /// Bodies that fit as they are, but for the last digits of their coordinates, as cells of a foam do: there, what looks
 /// like facets of a curve apart from another is a wedge where three cells meet.
 std::optional<JoinedWay> fitting_way(const Joining& joining, double size) {
@@ -508,8 +517,8 @@ std::optional<JoinedWay> fitting_way(const Joining& joining, double size) {
   try {
     JoinedWay way = joined_by(close, Rims::kBend, {joining.bodies, joining.options, all, close, joining.context});
     const Complex& complex = way.joined.complex;
-    if (way.is_sound() && keep_their_volumes(complex, joining.bodies, *limits.tolerance) &&
-        !leave_gaps(complex.surface, joining.misfits))
+    if (way.is_sound() && !has_new_short_edges(way, all) &&
+        keep_their_volumes(complex, joining.bodies, *limits.tolerance) && !leave_gaps(complex.surface, joining.misfits))
       return way;
   } catch (const InputError&) {
   }
