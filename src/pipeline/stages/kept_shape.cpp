@@ -26,7 +26,7 @@ constexpr double kAim = 0.5, kLeastScale = 0.4;
 constexpr int kTries = 2;
 /// Up to here a body gets its volume back by moves of vertices, of a tenth of their edges or so: smaller elements would
 /// be many times as many.
-constexpr double kGivenBack = 0.1;
+constexpr double kGivenBack = 0.12;
 /// Up to here the finished mesh gets it back, on a boundary that improvement may move.
 constexpr double kOwed = 0.05;
 /// Vertices that leave the surface, and chords between them, lie within so many bounds on deviation.

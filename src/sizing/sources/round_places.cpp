@@ -23,6 +23,8 @@ constexpr double kPartOfThickness = std::numbers::pi / kElementsPerTurn;
 /// Where it is round, a body is so many radii of curvature thick: two, but curvature is a mean along a needle's facets.
 /// Fillets have more behind them, and walls of tubes less.
 constexpr double kLeastRadii = 1, kMostRadii = 4;
+/// Facets so many radii long may be much thinner at an end, as a needle's are.
+constexpr double kLongFacet = 8;
 /// Facets on both sides of a curved wall may cross where chords lie deeper than half of its thickness.
 constexpr double kPartOfWall = 0.5;
 /// Both sides of a wall bend alike, to this part; noise does not.
@@ -86,7 +88,11 @@ SizeAtPlace sizes_in_round_places(const KnownSurface& known, const SurfaceCurvat
                                   const std::vector<double>& face, double floor) {
   const auto is_round = [&](std::size_t f, const auto& behind_within) {
     const double k = curvature.largest[f];
-    if (k * face[f] * kElementsPerTurn <= 2 * std::numbers::pi || curvature.sum[f] <= 0) return false;
+    if (curvature.sum[f] <= 0) return false;
+    const bool is_fine = k * face[f] * kElementsPerTurn <= 2 * std::numbers::pi;
+    const auto& [i, j, l] = known.mesh().triangles[f];
+    const std::vector<Vec3>& p = known.mesh().points;
+    if (is_fine && k * k * longest_squared_edge(p[i], p[j], p[l]) <= kLongFacet * kLongFacet) return false;
     const double thick = behind_within(kMostRadii / k).thick;
     return thick * k >= kLeastRadii && thick * k <= kMostRadii;
   };

@@ -41,6 +41,9 @@ constexpr double kLeastAutomaticScale = 0.3;
 constexpr double kLossPerSlenderness = 0.00025, kMostVolumeLoss = 0.03, kLeastScaleOfSlender = 0.02;
 /// Of a given size what is asked for where the body is round and thinner.
 constexpr double kRoundFloor = 1.0 / 32;
+/// Sizes for eleven elements to a turn may be so many times as large: of eight a rod has its volume back by moves of
+/// vertices.
+constexpr double kCoarsestThin = 11.0 / 8;
 
 /// What the user's options come to, once defaults are filled in.
 struct Choice {
@@ -248,28 +251,29 @@ std::vector<SizeSample> samples_of_features(const SurfaceMesh& surface, const Ch
   return feature_samples(surface, curves, choice.feature_elements, choice.floor, choice.base);
 }
 
-/// Where the body is thin and round: sizes that keep a needle's volume, where the user gave a size, and both sides of a
-/// tube apart.
+/// Where the body is thin and round: sizes that keep a needle's volume, and both sides of a tube apart. Coarser
+/// automatic sizes do not follow automatic_factor beyond kCoarsestThin there.
 SizeAtPlace sizes_of_thin(const KnownSurface& known, const SizeOptions& options, Bends& bends, WantedSizes& wanted,
                           const Stage& stage) {
   if (!options.size && !wanted.automatic) return {};
-  const SurfaceCurvature& curvature = bends.curvature();
-  const std::vector<double>& face = wanted.face;
-  const double largest = *std::ranges::max_element(face);
+  const double beyond = wanted.automatic ? std::max(1.0, options.automatic_factor / kCoarsestThin) : 1;
+  std::vector<double> face = wanted.face;
+  for (double& h : face) h *= beyond;
+  const double largest = *std::ranges::max_element(wanted.face);
   const double floor = std::max(options.min_size.value_or(0), kRoundFloor * largest);
-  const auto enter = [&](const char* name, const SizeAtPlace& sizes, const char* what, const char* why) {
+  const auto enter = [&](const char* name, SizeAtPlace sizes, const char* what, const char* why) {
+    if (sizes && beyond > 1) sizes.at = [at = sizes.at, beyond](const PlaceOnSurface& p) { return at(p) / beyond; };
     wanted.sources.add(name, sizes);
     if (sizes)
       stage.note(
           fmt::format("{} {:.4g} in places: elements are smaller there, or {}. `min_size` says how small they "
                       "may be",
-                      what, largest, why));
+                      what, beyond * largest, why));
     return sizes;
   };
-  SizeAtPlace round;
-  if (options.size)
-    round = enter("thin round places", sizes_in_round_places(known, curvature, face, floor),
-                  "the body is round and thinner than", "it would lose its volume");
+  const SurfaceCurvature& curvature = bends.curvature();
+  const SizeAtPlace round = enter("thin round places", sizes_in_round_places(known, curvature, face, floor),
+                                  "the body is round and thinner than", "it would lose its volume");
   const SizeAtPlace walls = enter("thin curved walls", sizes_in_curved_walls(known, curvature, face, floor),
                                   "the body has curved walls much thinner than", "their two sides would cross");
   return least_of(round, walls);
