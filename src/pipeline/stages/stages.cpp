@@ -113,6 +113,9 @@ constexpr double kDetail = 0.1;
 // Of no gradation that the user chose: strips between lines are narrow places that little else is near.
 constexpr double kRiseFromStrips = 0.3;
 
+// Of a size that is given: strips between lines that are narrower are served as they come.
+constexpr double kNarrowOfGiven = 1.0 / 3;
+
 // Of true geometry a size that is given follows curvature by so many elements a turn, as is usual with CAD.
 constexpr double kTurnsOfGeometry = 12;
 
@@ -402,8 +405,8 @@ Remeshed triangulate(const Prepared& input, const SizeField& sizes, Run& run) {
       const double slack = surface.max_deviation == run.options.surface.max_deviation ? 1 : kAutomaticSlack;
       const double budget = budget_of(input.surface.mesh(), run.options);
       const SizeOptions& size = run.options.size;
-      const FrontLimits limits{slack, budget, size.min_size.value_or(0),
-                               size.size && input.geometry ? kLeastOfGiven : 0, size.gradation ? 0 : kRiseFromStrips};
+      const FrontLimits limits{slack, budget, size.min_size.value_or(0), kNarrowOfGiven * size.size.value_or(0),
+                               size.gradation ? 0 : kRiseFromStrips};
       Remeshed remeshed = remeshed_in_shape(
           input, sizes, run, stage,
           [&](const SizeField& by) {

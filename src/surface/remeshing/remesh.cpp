@@ -104,9 +104,9 @@ class Remesher {
   /// Those of the kind, within the limits.
   StripRules strips() const {
     StripRules rules = kind_.strips();
-    rules.floor = std::max(rules.floor, work_.limits.least_part);
     rules.gradation = std::max(rules.gradation, work_.limits.rise);
     rules.least = work_.limits.least;
+    rules.narrowest = work_.limits.narrowest_strip;
     return rules;
   }
 

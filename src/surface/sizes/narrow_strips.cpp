@@ -59,7 +59,7 @@ struct Narrow {
 double size_beside(const InputSurface& input, HalfEdge h, Vec3 p, double old, const StripRules& rules) {
   const double width = width_at(input, h, p, kWorthwhileStrip / rules.size_per_width * old, rules.parallel);
   const double wanted = rules.size_per_width * width;
-  if (!(wanted < kWorthwhileStrip * old) || width < rules.hopeless * old) return old;
+  if (!(wanted < kWorthwhileStrip * old) || width < std::max(rules.hopeless * old, rules.narrowest)) return old;
   return std::min(old, std::max({rules.floor * old, rules.least, wanted}));
 }
 

@@ -21,6 +21,7 @@ struct StripRules {
   double hopeless;        ///< strips narrower than this part of the size stay bad even so
   double gradation = 0;   ///< from strips sizes may rise so fast, or as fast as elsewhere if that is faster
   double least = 0;       ///< no size falls below this, input units
+  double narrowest = 0;   ///< strips narrower than this stay as they come, input units
 };
 /// Triangles of 1.5 widths between the lines have 2r/R of .94. (At 2 widths models full of strips lose .01 of their
 /// mean; at 1.2 they gain .005 and have a third more triangles.) The lines differ by 12 degrees at most.
