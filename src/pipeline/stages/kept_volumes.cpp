@@ -194,7 +194,9 @@ void keep_mesh_volumes(const Prepared& input, const std::vector<double>& wanted,
 }
 
 void describe_input_volumes(const Prepared& input, const Filled& filled, Report& report) {
-  for (std::size_t r = 0; r < std::min(report.regions.size(), input.volumes.size()); ++r)
+  // The bodies of one surface are regions of the mesh, and their volumes are known together.
+  const bool is_by_region = input.volumes.size() > 1 || report.regions.size() == 1;
+  for (std::size_t r = 0; is_by_region && r < std::min(report.regions.size(), input.volumes.size()); ++r)
     report.regions[r].input_volume = input.volumes[r];
   if (!filled.layers || report.regions.empty()) return;
   std::vector<double> volumes;
@@ -211,7 +213,8 @@ void describe_volumes_of(const TetMesh& before, Report& report) {
 }
 
 std::vector<VolumeChange> volume_changes(const Report& report) {
-  if (report.regions.empty()) {
+  const auto is_known = [](const RegionSummary& r) { return r.true_volume > 0 || r.input_volume > 0; };
+  if (std::ranges::none_of(report.regions, is_known)) {
     const double before = report.true_volume > 0 ? report.true_volume : report.input_volume;
     if (!(before > 0)) return {};
     return {{"", 0, before, report.volume, report.true_volume > 0}};

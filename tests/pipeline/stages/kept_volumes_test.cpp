@@ -140,6 +140,15 @@ TEST(LostVolumes, OfASingleBodyAreSaidOnce) {
   EXPECT_TRUE(findings_called(generate(testing::icosphere(4), sized_to(0.1)).report, "volume-lost").empty());
 }
 
+TEST(LostVolumes, BodiesApartAreNotTakenForAllThereIs) {
+  Options options = sized_to(0.3);
+  options.require.volume = 1;
+  const Result made =
+      generate(testing::joined(testing::cube(1), testing::transformed(testing::cube(1), 2, {3, 0, 0})), options);
+  EXPECT_EQ(made.report.regions.size(), 2u);
+  EXPECT_TRUE(findings_called(made.report, "volume-lost").empty());
+}
+
 /// All of a hundred are in the report, ten are told one by one.
 TEST(LostVolumes, OfManyRegionsAreSummedUp) {
   const testing::KnownComplex spheres = testing::packed_spheres(3, 1);
