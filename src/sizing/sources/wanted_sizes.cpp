@@ -167,7 +167,8 @@ SizeAtPlace sizes_at_places(const KnownSurface& surface, const Choice& choice, c
                             SourceShares& sources) {
   SizeAtPlace gap, through;
   if (choice.gap > 0) {
-    const auto gaps = std::make_shared<GapFinder>(surface, choice.gap_floor, choice.base * choice.gap);
+    const auto gaps = std::make_shared<GapFinder>(surface, choice.gap_floor, choice.base * choice.gap,
+                                                  options.gap ? Measured::kWallsAndGaps : Measured::kWalls);
     if (options.gap) affordable.require("gap", choice.gap, tets_in_gaps(surface.mesh(), *gaps, choice.gap, affordable));
     gap = sizes_across(gaps, choice.gap, choice.gap_floor, !options.min_size);
     sources.add("`gap`", gap);
