@@ -352,8 +352,9 @@ Prepared prepare_aperiodic(const Domain& domain, Run& run) {
 SurfaceOptions true_to_input(const SurfaceMesh& input, const Options& options) {
   SurfaceOptions surface = options.surface;
   if (!surface.max_deviation && has_automatic_sizes(options)) {
-    // Who asks for coarser elements has chords that lie farther off.
-    const double coarser = std::max(1.0, options.size.automatic_factor);
+    // Who asks for coarser elements has chords that lie farther off; those of second order bend to the surface.
+    const double bend = options.order > 1 ? kSecondOrderEdge * kSecondOrderEdge : 1;
+    const double coarser = bend * std::max(1.0, options.size.automatic_factor);
     const double automatic = coarser * kAutomaticDeviation * bounding_box(input.points).diagonal();
     surface.max_deviation = std::min(automatic, asked_deviation(options).value_or(automatic));
   }
@@ -384,7 +385,7 @@ SizeField choose_sizes(const Prepared& input, Run& run) {
                ? size_field_of_surface(input.surface, size, stage)
                : make_size_field(input.surface, size, stage,
                                  {input.bound, input.closed.is_in_it, run.options.surface.volume_tolerance.has_value(),
-                                  input.geometry ? kTurnsOfGeometry : 0},
+                                  input.geometry ? kTurnsOfGeometry : 0, run.options.order > 1},
                                  budget);
   });
   const MethodTraits& method = traits_of(run.options.method);

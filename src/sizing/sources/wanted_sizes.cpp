@@ -74,7 +74,7 @@ double largest_size(const SizeMesh& mesh) {
 Choice choose(const SurfaceMesh& surface, const SizeOptions& o, const FaceRules& rules) {
   Choice c;
   c.automatic = has_automatic_base(o);
-  const double ours = base_size(surface);
+  const double coarser = rules.curved ? kSecondOrderEdge : 1, ours = coarser * base_size(surface);
   c.base = o.size.value_or(ours);
   // Sizes at points and a function speak for the whole surface: there is no need of a size where nobody asks, and ours
   // would cut what they ask for.
@@ -85,8 +85,8 @@ Choice choose(const SurfaceMesh& surface, const SizeOptions& o, const FaceRules&
   c.base = std::max(c.base, o.min_size.value_or(0));
   const double usual = o.callback && !o.size ? std::min(c.base, ours) : c.base;
   c.chosen_floor = o.min_size.value_or(usual * kChosenFloor);
-  c.floor = c.automatic ? o.min_size.value_or(usual * kAutomaticFloor) : c.chosen_floor;
-  c.gap_floor = o.min_size.value_or(usual * (c.automatic ? kAutomaticFloor : kChosenFloor));
+  c.floor = c.automatic ? o.min_size.value_or(usual * kAutomaticFloor / coarser) : c.chosen_floor;
+  c.gap_floor = o.min_size.value_or(usual * (c.automatic ? kAutomaticFloor / coarser : kChosenFloor));
   c.gap = o.gap.value_or(c.automatic ? kAutomaticGap : 0);
   const bool turns = o.size && !o.curvature && rules.turns > 0;
   c.curvature = o.curvature.value_or(c.automatic ? kAutomaticCurvature : turns ? rules.turns : 0);
@@ -235,7 +235,8 @@ double apply_shape(const SurfaceMesh& surface, const Choice& choice, const SizeO
   sources.changed("`max_deviation`", face);
   if (choice.curvature > 0) apply_curvature(curvature, choice.curvature, choice.curvature_floor, face);
   sources.changed("`curvature`", face);
-  return choice.automatic ? automatic_scale(surface, curvature, face) : 1;
+  // What chords cut off comes back where they bend.
+  return choice.automatic && !rules.curved ? automatic_scale(surface, curvature, face) : 1;
 }
 
 std::vector<SizeSample> samples_of_features(const SurfaceMesh& surface, const Choice& choice,

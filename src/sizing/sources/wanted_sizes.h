@@ -32,7 +32,12 @@ struct FaceRules {
   /// Where a size is given, and nothing said of curvature: elements that a full turn of the surface takes, down to
   /// kLeastOfGiven of that size. 0: none.
   double turns = 0;
+  /// Elements are to be curved: automatic ones are kSecondOrderEdge times as large, and details as fine.
+  bool curved = false;
 };
+
+/// An edge of second order has a node in its middle, and says as much as two.
+inline constexpr double kSecondOrderEdge = 2;
 
 /// What all sources together want on a surface, before any of it is put into a grid. Input units.
 struct WantedSizes {
