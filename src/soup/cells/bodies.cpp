@@ -393,10 +393,17 @@ void dissolve_imprints(Complex& complex, const Together& all, const cells::Misfi
   if (misfits.largest() <= misfits.floor()) return;
   std::vector<Vec3> given = all.points;
   std::sort(given.begin(), given.end(), lexicographic_order);
-  std::vector<char> may_go;
-  for (const Vec3 p : complex.surface.points)
-    may_go.push_back(!std::binary_search(given.begin(), given.end(), p, lexicographic_order));
-  if (cells::dissolve(complex.surface, may_go, misfits.floor(), context) == 0) return;
+  const auto dissolve_within = [&](double most) {
+    std::vector<char> may_go;
+    for (const Vec3 p : complex.surface.points)
+      may_go.push_back(!std::binary_search(given.begin(), given.end(), p, lexicographic_order));
+    return cells::dissolve(complex.surface, may_go, most, context) > 0;
+  };
+  // Walls that came together have moved by far more; those that lie on flat walls go first.
+  constexpr double kOfMisfit = 0.05;
+  bool any = false;
+  for (const double most : {misfits.floor(), kOfMisfit * misfits.largest()}) any = dissolve_within(most) || any;
+  if (!any) return;
   complex.volumes = volumes_of_regions(complex.surface);
 }
 
@@ -446,6 +453,7 @@ struct WayTogether {
   Rims rims;
   std::vector<std::uint32_t> place;  ///< of each body: walls of earlier ones stay
   const char* stays = "earlier";     ///< whose walls these are
+  bool may_cross = true;             ///< else it is given up where walls do
 };
 
 std::vector<std::uint32_t> as_given(const Misfits& misfits) {
@@ -466,6 +474,7 @@ JoinedWay joined_by(const WayTogether& way, const Joining& joining) {
   const auto& [bodies, options, all, misfits, context] = joining;
   const ClosedGaps closed = closed_by(way, all, context);
   const Arrangement arranged = arrange(closed.points, closed.triangles, context);
+  if (!way.may_cross && arranged.new_points > 0) throw InputError("bodies do not fit: their walls cross");
   const Cells cells(arranged.points, arranged.triangles, context);
 
   std::vector<std::uint32_t> body_of;
@@ -547,10 +556,10 @@ std::optional<JoinedWay> fitting_within(double within, double own, const Joining
   const MisfitLimits limits{within, size};
   const Misfits close({all.points, all.triangles, all.body}, limits, joining.context);
   try {
-    JoinedWay way = joined_by({&close, Rims::kBend, as_given(close)},
+    JoinedWay way = joined_by({&close, Rims::kBend, as_given(close), "earlier", false},
                               {joining.bodies, joining.options, all, close, joining.context});
     const Complex& complex = way.joined.complex;
-    if (way.crossings == 0 && way.shape.narrowest >= kAsNarrow * own && !has_new_short_edges(way, all) &&
+    if (way.shape.narrowest >= kAsNarrow * own && !has_new_short_edges(way, all) &&
         keep_their_volumes(complex, joining.bodies, within) && !leave_gaps(complex.surface, joining.misfits))
       return way;
   } catch (const InputError&) {
@@ -592,7 +601,7 @@ JoinedWay best_way(const Joining& joining, double size) {
     } catch (const InputError&) {
       if (&way == &ways.back() && !best) throw;
     }
-    if (best && best->is_sound()) break;
+    if (best && best->is_sound() && !has_new_short_edges(*best, joining.all)) break;
   }
   return std::move(*best);
 }
