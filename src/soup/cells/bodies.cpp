@@ -6,6 +6,7 @@
 #include "base/core/utf8.h"
 #include "base/core/wording.h"
 #include "base/geometry/measures.h"
+#include "base/geometry/self_intersection.h"
 #include "base/mesh/complex.h"
 #include "soup/cells/close_gaps.h"
 #include "soup/cells/dissolve.h"
@@ -19,6 +20,7 @@
 #include <numeric>
 #include <optional>
 #include <queue>
+#include <set>
 #include <tuple>
 #include <utility>
 
@@ -468,13 +470,25 @@ ClosedGaps closed_by(const WayTogether& way, const Together& all, const RunConte
   return close_gaps({all.points, all.triangles, place}, way.near->renumbered(way.place), way.rims, context);
 }
 
+/// Whether walls do otherwise than by sharing vertices, edges and whole triangles.
+bool cross_each_other(const ClosedGaps& closed, const RunContext& context) {
+  std::set<Triangle> known;
+  std::vector<Triangle> each;
+  for (const Triangle& t : closed.triangles) {
+    Triangle sorted = t;
+    std::sort(sorted.begin(), sorted.end());
+    if (known.insert(sorted).second) each.push_back(t);
+  }
+  return !self_intersections(closed.points, each, 1, context).empty();
+}
+
 /// Walls that are near come together; what lies between others that belong together is given away as slivers.
 JoinedWay joined_by(const WayTogether& way, const Joining& joining) {
   using Overlap = ComplexOptions::Overlap;
   const auto& [bodies, options, all, misfits, context] = joining;
   const ClosedGaps closed = closed_by(way, all, context);
+  if (!way.may_cross && cross_each_other(closed, context)) throw InputError("bodies do not fit: their walls cross");
   const Arrangement arranged = arrange(closed.points, closed.triangles, context);
-  if (!way.may_cross && arranged.new_points > 0) throw InputError("bodies do not fit: their walls cross");
   const Cells cells(arranged.points, arranged.triangles, context);
 
   std::vector<std::uint32_t> body_of;
