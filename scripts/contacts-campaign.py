@@ -155,15 +155,24 @@ def sphere(rng, number):
     return [block, ball(m, max(4, m // 2), rng.uniform(0, 1), True)], [block, ball(n, n // 2)], 2.5 * (sagitta(n) + sagitta(m))
 
 
-def thread(rng, number):
-    """One turn and a half of a round thread, without ends: it fades out."""
+def threads():
+    """A hole and a screw of one turn and a half of a round thread, without ends: it fades out; by rows, sides, and a turn."""
     pitch, depth = 0.8, 0.12
     radius = lambda r, z, angle: r if r > 1.5 or r == 0 else 1 + depth * math.sin(math.pi * z / 1.2) ** 2 * math.sin(
         2 * math.pi * z / pitch - angle)
     rows = lambda k: [(1, 1.2 * i / k) for i in range(k + 1)]
     hole = lambda k, n, t: ring_body([(2, 0), (2, 1.2), *reversed(rows(k))], n, t, radius)
     screw = lambda k, n, t, d: turned_body([(0, 0), *rows(k), (0, 1.2)], n, t, radius, d)
-    n, m, k, l = rng.choice((16, 24, 32)), rng.choice((18, 25, 36)), rng.choice((12, 18)), rng.choice((14, 21))
+    return hole, screw
+
+
+def thread_counts(rng):
+    return rng.choice((16, 24, 32)), rng.choice((18, 25, 36)), rng.choice((12, 18)), rng.choice((14, 21))
+
+
+def thread(rng, number):
+    hole, screw = threads()
+    n, m, k, l = thread_counts(rng)
     return [hole(k, n, 0), screw(l, m, 0.1, True)], [hole(k, n, 0), screw(k, n, 0, False)], 0.1
 
 
@@ -203,7 +212,7 @@ def case(number):
     scale = (1.0, 1e-3, 1e3)[number // len(FAMILIES) % 3]
     if number // len(FAMILIES) % 2 and family is not several:
         given, matched = given[::-1], matched[::-1]
-    if family in (pin, bolt, cone, sphere) and number // len(FAMILIES) % 2:
+    if family in (pin, bolt, cone, sphere, thread) and number // len(FAMILIES) % 2:
         matched = [given[0], with_facets_of(family, number, given)]
     sized = lambda bodies: [Surface([tuple(scale * x for x in p) for p in s.points], s.triangles) for s in bodies]
     return Case(family.__name__, sized(given), sized(matched), scale * misfit), scale
@@ -215,6 +224,9 @@ def with_facets_of(family, number, given):
     if family is sphere:
         rng.choice((8, 12, 16, 24)), rng.choice((9, 12, 15, 20, 30)), rng.uniform(0, 1)
         return with_cavity(given[0], 2)
+    if family is thread:
+        _, m, _, l = thread_counts(rng)
+        return threads()[0](l, m, 0.1)
     n, m, turn = counts(rng, number // len(FAMILIES))
     if family is pin:
         return ring_body([(1, 0), (2, 0), (2, 1), (1, 1)], m, turn)

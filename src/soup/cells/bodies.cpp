@@ -6,6 +6,7 @@
 #include "base/core/utf8.h"
 #include "base/core/wording.h"
 #include "base/geometry/measures.h"
+#include "base/geometry/self_intersection.h"
 #include "base/mesh/complex.h"
 #include "soup/cells/close_gaps.h"
 #include "soup/cells/dissolve.h"
@@ -16,8 +17,10 @@
 #include <cmath>
 #include <iterator>
 #include <map>
+#include <numeric>
 #include <optional>
 #include <queue>
+#include <set>
 #include <tuple>
 #include <utility>
 
@@ -140,9 +143,15 @@ std::vector<std::uint32_t> regions_of(const std::vector<Windings>& windings, Com
 /// the wall of the earliest one is left.
 class Slivers {
  public:
+  /// `place`: of each body, by which the earliest one is found.
   Slivers(Labelled& labelled, const std::vector<Windings>& windings, const std::vector<std::uint32_t>& body,
-          const cells::Misfits& misfits)
-      : labelled_(labelled), windings_(windings), body_(body), misfits_(misfits), walls_(labelled.cells.count()) {
+          const std::vector<std::uint32_t>& place, const cells::Misfits& misfits)
+      : labelled_(labelled),
+        windings_(windings),
+        body_(body),
+        place_(place),
+        misfits_(misfits),
+        walls_(labelled.cells.count()) {
     for (std::uint32_t t = 0; t < labelled.arranged.triangles.size(); ++t)
       for (const std::uint32_t c : labelled.cells.sides_of(t)) walls_[c].push_back(t);
   }
@@ -210,7 +219,8 @@ class Slivers {
 
   /// The region across most of the walls that are not the earliest body's; of walls to cells that are settled.
   std::optional<std::uint32_t> region_beyond(std::uint32_t c, const std::vector<char>& waits) const {
-    const std::uint32_t earliest = bodies_around(c).front();
+    const std::vector<std::uint32_t> around = bodies_around(c);
+    const std::uint32_t earliest = *std::ranges::min_element(around, {}, [&](std::uint32_t b) { return place_[b]; });
     std::map<std::uint32_t, double> areas;
     for (const std::uint32_t t : walls_[c]) {
       const auto origins = labelled_.arranged.origins_of(t);
@@ -229,6 +239,7 @@ class Slivers {
   Labelled& labelled_;
   const std::vector<Windings>& windings_;
   const std::vector<std::uint32_t>& body_;
+  const std::vector<std::uint32_t>& place_;
   const cells::Misfits& misfits_;
   std::vector<std::vector<std::uint32_t>> walls_;  ///< per cell
 };
@@ -384,20 +395,31 @@ void dissolve_imprints(Complex& complex, const Together& all, const cells::Misfi
   if (misfits.largest() <= misfits.floor()) return;
   std::vector<Vec3> given = all.points;
   std::sort(given.begin(), given.end(), lexicographic_order);
-  std::vector<char> may_go;
-  for (const Vec3 p : complex.surface.points)
-    may_go.push_back(!std::binary_search(given.begin(), given.end(), p, lexicographic_order));
-  if (cells::dissolve(complex.surface, may_go, misfits.floor(), context) == 0) return;
+  const auto dissolve_within = [&](double most) {
+    std::vector<char> may_go;
+    for (const Vec3 p : complex.surface.points)
+      may_go.push_back(!std::binary_search(given.begin(), given.end(), p, lexicographic_order));
+    return cells::dissolve(complex.surface, may_go, most, context) > 0;
+  };
+  // Walls that came together have moved by far more; those that lie on flat walls go first.
+  constexpr double kOfMisfit = 0.05;
+  bool any = false;
+  for (const double most : {misfits.floor(), kOfMisfit * misfits.largest()}) any = dissolve_within(most) || any;
+  if (!any) return;
   complex.volumes = volumes_of_regions(complex.surface);
 }
 
-void note_changes(const cells::ClosedGaps& closed, const std::string& walls, double moved, double floor,
-                  const Arrangement& arranged, std::vector<std::string>& notes) {
+void note_changes(const cells::ClosedGaps& closed, const std::string& walls, const char* stays, double moved,
+                  double floor, const Arrangement& arranged, std::vector<std::string>& notes) {
   if (!walls.empty())
     notes.push_back(
-        fmt::format("walls of bodies that nearly touch are one, those of the earlier body: {}; that moved "
-                    "{} by {:.3g} at most, and {:.3g} of volume; `tolerance` 0 leaves all as it is",
-                    walls, counted(closed.moved, "vertex", "vertices"), closed.largest_move, moved));
+        fmt::format("walls of bodies that nearly touch are one, those of the {} body: {}; that moved "
+                    "{}{:.3g} of volume; `tolerance` 0 leaves all as it is",
+                    stays, walls,
+                    closed.moved == 0 ? ""
+                                      : fmt::format("{} by {:.3g} at most, and ",
+                                                    counted(closed.moved, "vertex", "vertices"), closed.largest_move),
+                    moved));
   else if (closed.moved > 0)
     notes.push_back(fmt::format("{} moved onto earlier bodies within the tolerance of {:.3g}, by {:.3g} at most",
                                 counted(closed.moved, "vertex", "vertices"), floor, closed.largest_move));
@@ -428,11 +450,44 @@ struct JoinedWay {
   bool is_sound() const { return crossings == 0 && shape.has_no_wedge(); }
 };
 
-/// Walls that are `near` come together; what lies between others that belong together is given away as slivers.
-JoinedWay joined_by(const Misfits& near, Rims rims, const Joining& joining) {
+struct WayTogether {
+  const Misfits* near;  ///< which walls do
+  Rims rims;
+  std::vector<std::uint32_t> place;  ///< of each body: walls of earlier ones stay
+  const char* stays = "earlier";     ///< whose walls these are
+  bool may_cross = true;             ///< else it is given up where walls do
+};
+
+std::vector<std::uint32_t> as_given(const Misfits& misfits) {
+  std::vector<std::uint32_t> place(misfits.bodies());
+  std::iota(place.begin(), place.end(), 0);
+  return place;
+}
+
+ClosedGaps closed_by(const WayTogether& way, const Together& all, const RunContext& context) {
+  std::vector<std::uint32_t> place;
+  for (const std::uint32_t b : all.body) place.push_back(way.place[b]);
+  return close_gaps({all.points, all.triangles, place}, way.near->renumbered(way.place), way.rims, context);
+}
+
+/// Whether walls do otherwise than by sharing vertices, edges and whole triangles.
+bool cross_each_other(const ClosedGaps& closed, const RunContext& context) {
+  std::set<Triangle> known;
+  std::vector<Triangle> each;
+  for (const Triangle& t : closed.triangles) {
+    Triangle sorted = t;
+    std::sort(sorted.begin(), sorted.end());
+    if (known.insert(sorted).second) each.push_back(t);
+  }
+  return !self_intersections(closed.points, each, 1, context).empty();
+}
+
+/// Walls that are near come together; what lies between others that belong together is given away as slivers.
+JoinedWay joined_by(const WayTogether& way, const Joining& joining) {
   using Overlap = ComplexOptions::Overlap;
   const auto& [bodies, options, all, misfits, context] = joining;
-  const ClosedGaps closed = close_gaps({all.points, all.triangles, all.body}, near, rims, context);
+  const ClosedGaps closed = closed_by(way, all, context);
+  if (!way.may_cross && cross_each_other(closed, context)) throw InputError("bodies do not fit: their walls cross");
   const Arrangement arranged = arrange(closed.points, closed.triangles, context);
   const Cells cells(arranged.points, arranged.triangles, context);
 
@@ -445,7 +500,7 @@ JoinedWay joined_by(const Misfits& near, Rims rims, const Joining& joining) {
   labelled.region = regions_of(windings, options.overlap, labelled.names);
   const std::size_t end_of_common = labelled.names.size();
   if (options.within_first) empty_outside_first(windings, bodies, labelled);
-  const Slivers::Given slivers = Slivers(labelled, windings, body_of, misfits).give_away();
+  const Slivers::Given slivers = Slivers(labelled, windings, body_of, way.place, misfits).give_away();
   // From here on nobody overlaps in them.
   for (std::size_t c = 0; c < windings.size(); ++c)
     if (slivers.is_sliver[c]) windings[c].clear();
@@ -478,7 +533,7 @@ JoinedWay joined_by(const Misfits& near, Rims rims, const Joining& joining) {
   NameCleaning().clean(complex.surface.patch_names);
   std::vector<std::string> notes;
   const double moved = slivers.volume + moved_volume(all, closed, bodies.size());
-  note_changes(closed, in_words(misfits, bodies), moved, misfits.floor(), arranged, notes);
+  note_changes(closed, in_words(misfits, bodies), way.stays, moved, misfits.floor(), arranged, notes);
   if (slivers.count > 0) notes.push_back(fmt::format("{} between bodies closed", counted(slivers.count, "thin gap")));
   note_overlaps(labelled, windings, bodies, earlier ? "first" : "later", notes);
   note_common_regions(labelled, bodies.size(), end_of_common, notes);
@@ -507,42 +562,60 @@ bool has_new_short_edges(const JoinedWay& way, const Together& all) {
   return way.shape.shortest < kMuchShorter * given;
 }
 
-/// Bodies that fit as they are, but for the last digits of their coordinates, as cells of a foam do: there, what looks
-/// like facets of a curve apart from another is a wedge where three cells meet.
-std::optional<JoinedWay> fitting_way(const Joining& joining, double size) {
-  constexpr double kLastDigits = 1e-4;  // of the size
-  const MisfitLimits limits{kLastDigits * size, size};
+/// Bodies that fit as they are, but for what is nearer than `within`: with wedges that they have by themselves only, as
+/// their last digits change them.
+std::optional<JoinedWay> fitting_within(double within, double own, const Joining& joining, double size) {
+  constexpr double kAsNarrow = 0.9;
   const Together& all = joining.all;
+  const MisfitLimits limits{within, size};
   const Misfits close({all.points, all.triangles, all.body}, limits, joining.context);
   try {
-    JoinedWay way = joined_by(close, Rims::kBend, {joining.bodies, joining.options, all, close, joining.context});
+    JoinedWay way = joined_by({&close, Rims::kBend, as_given(close), "earlier", false},
+                              {joining.bodies, joining.options, all, close, joining.context});
     const Complex& complex = way.joined.complex;
-    if (way.is_sound() && !has_new_short_edges(way, all) &&
-        keep_their_volumes(complex, joining.bodies, *limits.tolerance) && !leave_gaps(complex.surface, joining.misfits))
+    if (way.shape.narrowest >= kAsNarrow * own && !has_new_short_edges(way, all) &&
+        keep_their_volumes(complex, joining.bodies, within) && !leave_gaps(complex.surface, joining.misfits))
       return way;
   } catch (const InputError&) {
   }
   return std::nullopt;
 }
 
-/// Walls of fine facets are best brought together whole. Coarse ones may cross in vain then, and are better left where
-/// they are. `size`: of elements to come.
+/// Bodies that fit but for the last digits of their coordinates, as cells of a foam do: there, what looks like facets
+/// of a curve apart from another is a wedge where three cells meet.
+std::optional<JoinedWay> fitting_way(const Joining& joining, double size) {
+  SurfaceMesh before;
+  before.points = joining.all.points, before.triangles = joining.all.triangles;
+  const double own = shape_of_walls(before).narrowest;
+  // Parts of the size: with six digits, or four, of what has ten elements across.
+  for (const double last_digits : {1e-4, 1e-3}) {
+    const double within = std::min(last_digits * size, joining.options.tolerance.value_or(HUGE_VAL));
+    if (std::optional<JoinedWay> way = fitting_within(within, own, joining, size)) return way;
+  }
+  return std::nullopt;
+}
+
+/// Walls of fine facets are best brought together whole. Coarse ones that come to them may cross in vain then: the
+/// finer ones come to these, or all are better left where they are. `size`: of elements to come.
 JoinedWay best_way(const Joining& joining, double size) {
   const Misfits& misfits = joining.misfits;
-  if (misfits.largest() <= misfits.floor()) return joined_by(misfits, Rims::kBend, joining);
-  if (!joining.options.tolerance)
-    if (std::optional<JoinedWay> fitting = fitting_way(joining, size)) return std::move(*fitting);
+  const std::vector<std::uint32_t> given = as_given(misfits), coarsest = misfits.coarsest_first();
+  if (misfits.largest() <= misfits.floor()) return joined_by({&misfits, Rims::kBend, given}, joining);
+  if (std::optional<JoinedWay> fitting = fitting_way(joining, size)) return std::move(*fitting);
   const Misfits apart = misfits.without_contacts();
+  std::vector<WayTogether> ways{{&misfits, Rims::kBend, given}, {&misfits, Rims::kKeep, given}};
+  if (coarsest != given)
+    for (const Rims rims : {Rims::kBend, Rims::kKeep}) ways.push_back({&misfits, rims, coarsest, "coarser"});
+  ways.push_back({&apart, Rims::kBend, given});
   std::optional<JoinedWay> best;
-  for (const auto& [near, rims] : {std::pair{&misfits, Rims::kBend}, {&misfits, Rims::kKeep}, {&apart, Rims::kBend}}) {
-    const bool is_last = near == &apart;
+  for (const WayTogether& way : ways) {
     try {
-      JoinedWay way = joined_by(*near, rims, joining);
-      if (!best || way.shape.worth() > best->shape.worth()) best = std::move(way);
+      JoinedWay joined = joined_by(way, joining);
+      if (!best || joined.shape.worth() > best->shape.worth()) best = std::move(joined);
     } catch (const InputError&) {
-      if (is_last && !best) throw;
+      if (&way == &ways.back() && !best) throw;
     }
-    if (best && best->is_sound()) break;
+    if (best && best->is_sound() && !has_new_short_edges(*best, joining.all)) break;
   }
   return std::move(*best);
 }

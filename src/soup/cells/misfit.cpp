@@ -145,25 +145,40 @@ class Measuring {
     for (std::vector<Triangle>& f : faces) walls_.emplace_back(points_, std::move(f));
   }
 
-  /// The misfits of pairs of bodies that come near each other.
-  std::map<std::pair<std::uint32_t, std::uint32_t>, double> misfits() const {
+  /// The misfits of pairs of bodies that come near each other; and how far their facets there are from what they stand
+  /// for.
+  std::map<std::pair<std::uint32_t, std::uint32_t>, double> misfits(std::vector<double>& sagitta) const {
     const std::vector<std::array<std::uint32_t, 2>> pairs = near_pairs();
-    std::vector<double> misfit_of(pairs.size(), 0);
+    std::vector<std::array<Met, 2>> met(pairs.size());
     parallel_for(
         pairs.size(),
         [&](std::size_t i) {
           const auto [a, b] = pairs[i];
           context_.check();
-          misfit_of[i] = std::max(misfit(walls_[a], walls_[b]), misfit(walls_[b], walls_[a]));
+          met[i] = {misfit(walls_[a], walls_[b]), misfit(walls_[b], walls_[a])};
         },
         Split::kAdaptive);
     std::map<std::pair<std::uint32_t, std::uint32_t>, double> misfits;
-    for (std::size_t i = 0; i < pairs.size(); ++i)
-      if (misfit_of[i] > 0) misfits[{pairs[i][0], pairs[i][1]}] = misfit_of[i];
+    for (std::size_t i = 0; i < pairs.size(); ++i) {
+      const auto [a, b] = pairs[i];
+      const double apart = std::max(met[i][0].apart, met[i][1].apart);
+      if (apart > 0) misfits[{a, b}] = apart;
+      sagitta[b] = std::max(sagitta[b], met[i][0].sagitta);
+      sagitta[a] = std::max(sagitta[a], met[i][1].sagitta);
+    }
     return misfits;
   }
 
  private:
+  /// What is met of another wall: how far away it is, and how far its facets are from what they stand for; 0: nothing.
+  struct Met {
+    double apart = 0, sagitta = 0;
+    void add(const Met& other) {
+      apart = std::max(apart, other.apart);
+      sagitta = std::max(sagitta, other.sagitta);
+    }
+  };
+
   /// Bodies whose boxes come near each other.
   std::vector<std::array<std::uint32_t, 2>> near_pairs() const {
     double sagitta = 0;
@@ -204,37 +219,36 @@ class Measuring {
   };
 
   /// The farthest that `a` lies from a wall of `b` that it belongs to.
-  double misfit(const BodyWall& a, const BodyWall& b) const {
+  Met misfit(const BodyWall& a, const BodyWall& b) const {
     const double most = most_between(a, b);
     const Box3 near_b = grown(b.box, most);
-    double largest = 0;
+    Met all;
     std::vector<char> in_contact(a.vertices.size(), 0);
     for (std::size_t v = 0; v < a.vertices.size(); ++v) {
       const Vec3 p = points_[a.vertices[v]];
       if (!near_b.overlaps({p, p})) continue;
-      const double d = misfit_at(a, v, b, most);
-      in_contact[v] = d > 0;
-      largest = std::max(largest, d);
+      const Met met = misfit_at(a, v, b, most);
+      in_contact[v] = met.apart > 0;
+      all.add(met);
     }
     for (const BodyWall::WallEdge& e : a.edges)
-      if (!in_contact[e.v] || !in_contact[e.w]) largest = std::max(largest, misfit_along(a, e, b, near_b, most));
-    return largest;
+      if (!in_contact[e.v] || !in_contact[e.w]) all.add(misfit_along(a, e, b, near_b, most));
+    return all;
   }
 
-  double misfit_at(const BodyWall& a, std::size_t v, const BodyWall& b, double most) const {
+  Met misfit_at(const BodyWall& a, std::size_t v, const BodyWall& b, double most) const {
     const Vec3 p = points_[a.vertices[v]];
     // The end of a sheet goes on to walls any way.
-    double largest = a.at_end[v] ? misfit_at(a, {p, {}, a.sagitta_at[v]}, b, most) : 0;
-    for (const std::uint32_t s : a.around[v])
-      largest = std::max(largest, misfit_at(a, {p, a.normals[s], a.sagitta_at[v]}, b, most));
-    return largest;
+    Met all = a.at_end[v] ? misfit_at(a, {p, {}, a.sagitta_at[v]}, b, most) : Met{};
+    for (const std::uint32_t s : a.around[v]) all.add(misfit_at(a, {p, a.normals[s], a.sagitta_at[v]}, b, most));
+    return all;
   }
 
   /// Of an edge that goes through a contact, or ends in it: of some places on it.
-  double misfit_along(const BodyWall& a, const BodyWall::WallEdge& e, const BodyWall& b, const Box3& near_b,
-                      double most) const {
+  Met misfit_along(const BodyWall& a, const BodyWall::WallEdge& e, const BodyWall& b, const Box3& near_b,
+                   double most) const {
     const Vec3 p = points_[a.vertices[e.v]], q = points_[a.vertices[e.w]];
-    if (!near_b.overlaps({min(p, q), max(p, q)})) return 0;
+    if (!near_b.overlaps({min(p, q), max(p, q)})) return {};
     constexpr int kPlaces = 8;
     // Beside the end of the other wall there is none: 37 degrees, when facets at their edges see 30.
     constexpr double kAcross = 0.8;
@@ -246,18 +260,18 @@ class Measuring {
       from = std::max(from, std::min(x, y));
       to = std::min(to, std::max(x, y));
     }
-    double largest = 0;
+    Met all;
     for (int k = 0; k < kPlaces && from < to; ++k) {
       const Vec3 at = p + (from + (to - from) * (k + 0.5) / kPlaces) * (q - p);
       for (const std::uint32_t t : {e.s, e.t})
-        largest = std::max(largest, misfit_at(a, {at, a.normals[t], a.sagitta[t], kAcross}, b, most));
+        all.add(misfit_at(a, {at, a.normals[t], a.sagitta[t], kAcross}, b, most));
     }
-    return largest;
+    return all;
   }
 
-  double misfit_at(const BodyWall& a, const Place& place, const BodyWall& b, double most) const {
+  Met misfit_at(const BodyWall& a, const Place& place, const BodyWall& b, double most) const {
     const Vec3 p = place.at;
-    double nearest = TriangleTree::kFar, allowed = 0;
+    double nearest = TriangleTree::kFar, sagitta = 0;
     Vec3 at;
     b.tree->for_each_box_near(grown({p, p}, most), [&](std::uint32_t t, const TriangleCorners& c) {
       const Vec3 q = closest_point_on_triangle(p, c[0], c[1], c[2]);
@@ -267,13 +281,15 @@ class Measuring {
       if (std::abs(dot(b.normals[t], p - q)) < place.across * d) return true;
       nearest = d;
       at = q;
-      allowed = kOfSagitta * (place.sagitta + b.sagitta[t]);
+      sagitta = b.sagitta[t];
       return true;
     });
-    if (!(nearest <= most)) return 0;
-    if (limits_.tolerance || nearest <= allowed) return is_thinner(a, p, b, at, nearest) ? 0 : nearest;
+    if (!(nearest <= most)) return {};
+    const Met met{nearest, sagitta};
+    const double allowed = kOfSagitta * (place.sagitta + sagitta);
+    if (limits_.tolerance || nearest <= allowed) return is_thinner(a, p, b, at, nearest) ? Met{} : met;
     const bool small = nearest <= kOfSize * limits_.size;
-    return small && !is_thinner(a, p, b, at, kThicker * nearest) ? nearest : 0;
+    return small && !is_thinner(a, p, b, at, kThicker * nearest) ? met : Met{};
   }
 
   /// Whether one of the bodies is there, to be moved by that.
@@ -291,19 +307,37 @@ class Measuring {
 
 Misfits::Misfits(const BodySoup& soup, const MisfitLimits& limits, const RunContext& context) {
   for (const std::uint32_t b : soup.body) bodies_ = std::max(bodies_, b + 1);
+  sagitta_.assign(bodies_, 0);
   if (limits.tolerance == 0.0) return;
   // Single precision keeps seven digits.
   constexpr double kOfDiagonal = 1e-6;
   Box3 box;
   for (const Vec3 p : soup.points) box.add(p);
   floor_ = std::min(kOfDiagonal * box.diagonal(), limits.tolerance.value_or(TriangleTree::kFar));
-  misfit_ = Measuring(soup, limits, context).misfits();
+  misfit_ = Measuring(soup, limits, context).misfits(sagitta_);
 }
 
 double Misfits::largest() const {
   double largest = 0;
   for (const auto& [pair, d] : misfit_) largest = std::max(largest, d);
   return largest;
+}
+
+std::vector<std::uint32_t> Misfits::coarsest_first() const {
+  std::vector<std::uint32_t> order(bodies_), place(bodies_);
+  std::iota(order.begin(), order.end(), 0);
+  std::stable_sort(order.begin(), order.end(),
+                   [&](std::uint32_t a, std::uint32_t b) { return sagitta_[a] > sagitta_[b]; });
+  for (std::uint32_t k = 0; k < bodies_; ++k) place[order[k]] = k;
+  return place;
+}
+
+Misfits Misfits::renumbered(const std::vector<std::uint32_t>& number) const {
+  Misfits other = *this;
+  other.misfit_.clear();
+  for (const auto& [pair, apart] : misfit_) other.misfit_[std::minmax(number[pair.first], number[pair.second])] = apart;
+  for (std::uint32_t b = 0; b < bodies_; ++b) other.sagitta_[number[b]] = sagitta_[b];
+  return other;
 }
 
 }  // namespace octafront::cells

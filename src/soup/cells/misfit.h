@@ -63,6 +63,11 @@ class Misfits {
   /// What is that near comes together: corners of three walls are farther apart than the walls.
   double reach(std::uint32_t a, std::uint32_t b) const { return std::max(floor_, kOfCorner * misfit(a, b)); }
   double largest() const;
+  /// The place of each body if those with the coarsest facets where they meet others come first; else they keep their
+  /// order.
+  std::vector<std::uint32_t> coarsest_first() const;
+  /// The same of bodies with other numbers: number[b] instead of b.
+  Misfits renumbered(const std::vector<std::uint32_t>& number) const;
   /// As if no two bodies were in contact.
   Misfits without_contacts() const {
     Misfits none = *this;
@@ -79,6 +84,7 @@ class Misfits {
   std::uint32_t bodies_ = 0;
   double floor_ = 0;
   std::map<std::pair<std::uint32_t, std::uint32_t>, double> misfit_;  ///< of bodies in contact, the earlier one first
+  std::vector<double> sagitta_;  ///< per body: how far facets in contact are from what they stand for, at most
 };
 
 }  // namespace octafront::cells

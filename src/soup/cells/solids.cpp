@@ -1,14 +1,17 @@
 // Solids by name in one file, such as those of an STL file with several.
 
 #include "base/core/disjoint_sets.h"
+#include "base/core/groups.h"
 #include "base/core/wording.h"
 #include "base/mesh/surface_topology.h"
 #include "soup/cells/bodies.h"
 #include "soup/cells/misfit.h"
+#include "soup/tidy/steps.h"
 
 #include <algorithm>
 #include <map>
 #include <string>
+#include <unordered_map>
 #include <utility>
 
 #include <fmt/core.h>
@@ -48,39 +51,87 @@ std::vector<Body> solids_of(const SurfaceMesh& surface) {
   return larger_first(bodies);
 }
 
-/// Shells by the vertices that they share if there are several, each closed by itself and facing outward; else none.
-/// Their faces know by `source` which of the surface they are.
-std::vector<Body> outward_shells(const SurfaceMesh& surface) {
-  // More of them are dust, or a scene that nobody means as regions.
-  constexpr std::size_t kMostShells = 1000;
+/// Triangles of one surface as bodies: each by the number of its body. Their faces know by `source` which they are.
+std::vector<Body> shells_of(const SurfaceMesh& surface, const std::vector<std::uint32_t>& shell, std::size_t count) {
+  std::vector<Body> shells(count);
+  std::vector<std::uint32_t> last(surface.points.size(), kNone);
+  std::vector<VertexIndex> vertex(surface.points.size(), kNone);
+  Groups<> of_shell(count, [&](const auto& add) {
+    for (std::uint32_t t = 0; t < shell.size(); ++t) add(shell[t], t);
+  });
+  for (std::uint32_t s = 0; s < count; ++s)
+    for (const std::uint32_t t : of_shell[s]) {
+      SurfaceMesh& made = shells[s].surface;
+      Triangle triangle = surface.triangles[t];
+      for (VertexIndex& v : triangle) {
+        if (last[v] != s) {
+          last[v] = s;
+          vertex[v] = static_cast<VertexIndex>(made.points.size());
+          made.points.push_back(surface.points[v]);
+        }
+        v = vertex[v];
+      }
+      made.triangles.push_back(triangle);
+      made.source.push_back(t);
+    }
+  return shells;
+}
+
+/// More shells are dust, or a scene that nobody means as regions.
+constexpr std::size_t kMostShells = 1000;
+
+/// Shells by the vertices that they share; none if there are too many.
+std::vector<Body> shells_by_vertices(const SurfaceMesh& surface) {
   DisjointSets sets(surface.points.size());
   for (const auto& [a, b, c] : surface.triangles) {
     sets.join(a, b);
     sets.join(a, c);
   }
-  std::map<VertexIndex, std::size_t> number;
-  std::vector<Body> shells;
-  std::vector<VertexIndex> vertex(surface.points.size(), kNone);
-  for (std::uint32_t t = 0; t < surface.triangles.size(); ++t) {
-    const auto [at, is_new] = number.try_emplace(sets.find(surface.triangles[t][0]), shells.size());
-    if (is_new && shells.size() == kMostShells) return {};
-    if (is_new) shells.emplace_back();
-    SurfaceMesh& shell = shells[at->second].surface;
-    Triangle triangle = surface.triangles[t];
-    for (VertexIndex& v : triangle) {
-      if (vertex[v] == kNone) {
-        vertex[v] = static_cast<VertexIndex>(shell.points.size());
-        shell.points.push_back(surface.points[v]);
-      }
-      v = vertex[v];
-    }
-    shell.triangles.push_back(triangle);
-    shell.source.push_back(t);
+  std::map<VertexIndex, std::uint32_t> number;
+  std::vector<std::uint32_t> shell;
+  for (const Triangle& t : surface.triangles) {
+    shell.push_back(number.try_emplace(sets.find(t[0]), static_cast<std::uint32_t>(number.size())).first->second);
+    if (number.size() > kMostShells) return {};
   }
-  const bool sound = shells.size() > 1 && std::all_of(shells.begin(), shells.end(), [](const Body& shell) {
-                       const SurfaceMesh& s = shell.surface;
-                       return is_closed_manifold(s.triangles, s.points.size()) && enclosed_volume(s) > 0;
-                     });
+  return shells_of(surface, shell, number.size());
+}
+
+/// Shells one after the other in the file, each closed before the next one begins, whatever vertices they share; none
+/// if the last one stays open, or there are too many.
+std::vector<Body> shells_in_order(const SurfaceMesh& surface) {
+  std::unordered_map<std::uint64_t, int> ways;  // of each edge, by which it is open
+  std::vector<std::uint32_t> shell;
+  std::uint32_t count = 0;
+  double volume = 0;
+  for (const Triangle& t : surface.triangles) {
+    shell.push_back(count);
+    const auto& [a, b, c] = t;
+    volume += dot(surface.points[a], cross(surface.points[b], surface.points[c]));
+    for (const auto& [p, q] : {std::pair{a, b}, {b, c}, {c, a}}) {
+      const std::uint64_t key = static_cast<std::uint64_t>(std::min(p, q)) << 32 | std::max(p, q);
+      if (const auto at = ways.try_emplace(key).first; (at->second += p < q ? 1 : -1) == 0) ways.erase(at);
+    }
+    // Two triangles back to back enclose nothing; what encloses a cavity comes behind it.
+    if (!ways.empty() || !(volume > 0)) continue;
+    volume = 0;
+    if (++count > kMostShells) return {};
+  }
+  return volume == 0 && ways.empty() ? shells_of(surface, shell, count) : std::vector<Body>{};
+}
+
+/// Several, and none touches another.
+bool are_apart(const std::vector<Body>& shells) {
+  return shells.size() > 1 && std::ranges::all_of(shells, [](const Body& shell) {
+           return is_closed_manifold(shell.surface.triangles, shell.surface.points.size());
+         });
+}
+
+/// Shells if there are several, each closed by itself and facing outward; else none.
+std::vector<Body> outward_shells(const SurfaceMesh& surface) {
+  std::vector<Body> shells = shells_by_vertices(surface);
+  if (!are_apart(shells)) shells = shells_in_order(surface);
+  const bool sound = shells.size() > 1 &&
+                     std::ranges::all_of(shells, [](const Body& shell) { return enclosed_volume(shell.surface) > 0; });
   return sound ? larger_first(shells) : std::vector<Body>{};
 }
 
@@ -126,13 +177,16 @@ std::optional<Complex> nested_or_touching(const std::vector<Body>& bodies, const
 
 std::optional<Complex> complex_of_shells(const SurfaceMesh& surface, const ComplexOptions& options,
                                          const ElementsToCome& elements, const RunContext& context) {
-  std::vector<Body> shells = outward_shells(surface);
+  // Some formats have vertices of its own for each triangle.
+  tidy::Draft draft{surface, {}, context};
+  tidy::merge_vertices(draft);
+  std::vector<Body> shells = outward_shells(draft.mesh);
   const MisfitLimits limits = limits_for(options, elements, shells);
   if (shells.empty() || !boxes_meet(shells, limits)) return std::nullopt;
   std::vector<std::uint32_t> shell_of(surface.triangles.size());
   for (std::uint32_t b = 0; b < shells.size(); ++b)
     for (const std::uint32_t t : shells[b].surface.source) shell_of[t] = b;
-  const Misfits misfits({surface.points, surface.triangles, shell_of}, limits, context);
+  const Misfits misfits({draft.mesh.points, draft.mesh.triangles, shell_of}, limits, context);
   // Walls that touch exactly, or are apart, make cells by themselves.
   if (!(misfits.largest() > 0)) return std::nullopt;
   // A joined complex counts the faces of all bodies through.

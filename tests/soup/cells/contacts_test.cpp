@@ -12,7 +12,9 @@
 #include "support/named_surfaces.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
+#include <map>
 #include <random>
 #include <string>
 #include <utility>
@@ -97,6 +99,46 @@ TEST(Contacts, CoarseWallsWithoutAVertexInTheContact) {
   for (const Complex* complex : {&ring_later, &bolt_later}) {
     EXPECT_GT(shortest_edge(complex->surface), .1);
     EXPECT_FALSE(is_said(*complex, "faces divided"));
+  }
+}
+
+TEST(Contacts, FineWallsComeToCoarseOnesInAnyOrder) {
+  // Six sides cut off 13 % of the radius: bent to finer walls they would cross each other.
+  const SurfaceMesh ring = faceted_ring(6, 1, 2.2, 1);
+  const double round = polygon(6, 2.2), hole = polygon(6, 1);
+  for (const int sides : {13, 24, 48}) {
+    SCOPED_TRACE(sides);
+    const SurfaceMesh bolt = faceted_pin(sides, 1, -.7, 1.9, .1);
+    const Complex bolt_first = joined_at({{"bolt", bolt}, {"ring", ring}}, .4);
+    const Complex ring_first = joined_at({{"ring", ring}, {"bolt", bolt}}, .4);
+    for (const Complex* complex : {&bolt_first, &ring_first}) {
+      const bool is_bolt_first = complex == &bolt_first;
+      ASSERT_EQ(complex->volumes.size(), 2U);
+      // The bolt is as thick as one of both in the hole, and between both beside it.
+      EXPECT_GT(complex->volumes[!is_bolt_first], 2.6 * hole - 1e-9);
+      EXPECT_LT(complex->volumes[!is_bolt_first], 2.6 * polygon(sides, 1) + 1e-9);
+      EXPECT_GT(complex->volumes[is_bolt_first], round - polygon(sides, 1) - .1);
+      EXPECT_LT(complex->volumes[is_bolt_first], round - hole + 1e-9);
+      EXPECT_GT(shortest_edge(complex->surface), .5 * 2 * std::sin(std::acos(-1) / sides));
+      EXPECT_TRUE(self_intersections(complex->surface.points, complex->surface.triangles).empty());
+    }
+    EXPECT_EQ(is_said(bolt_first, "those of the coarser body"), sides == 13);
+  }
+}
+
+TEST(Contacts, KeptTrianglesAreNotFlat) {
+  // Where walls that turn cross edges of others, a little beside their corners.
+  for (const auto& [n, m] : {std::pair{24, 25}, {16, 17}, {20, 20}}) {
+    SCOPED_TRACE(n);
+    const Complex complex =
+        joined_at({{"bolt", faceted_pin(m, 1, -.7, 1.9, .1)}, {"ring", faceted_ring(n, 1, 2.2, 1)}}, .3);
+    double flattest = 1;
+    for (const auto& [a, b, c] : complex.surface.triangles) {
+      const auto& p = complex.surface.points;
+      const double longest = std::max({distance(p[a], p[b]), distance(p[b], p[c]), distance(p[c], p[a])});
+      flattest = std::min(flattest, length(cross(p[b] - p[a], p[c] - p[a])) / (longest * longest));
+    }
+    EXPECT_GT(flattest, .005);
   }
 }
 
@@ -233,14 +275,13 @@ TEST(Contacts, WallsFartherApartStay) {
 }
 
 /// Each cell written by itself, with so few digits that its faces are no planes any more and divided in other ways.
-TEST(Contacts, CellsOfAFoamAreThoseThatThereAre) {
+std::vector<Body> rounded_cells(int sites, unsigned seed, std::vector<double>& volumes) {
   testing::ConvexCells foam({1, 1, 1});
-  std::mt19937 random(3);
+  std::mt19937 random(seed);
   std::uniform_real_distribution<double> u(0.02, 0.98);
-  for (int k = 0; k < 12; ++k) foam.insert_site({u(random), u(random), u(random)});
+  for (int k = 0; k < sites; ++k) foam.insert_site({u(random), u(random), u(random)});
   const SurfaceMesh complex = foam.complex();
   std::vector<Body> cells;
-  std::vector<double> volumes;
   for (std::uint32_t c = 0; c < foam.count(); ++c) {
     SurfaceMesh cell = boundary_of_region(complex, c);
     cell.patch.clear(), cell.patch_names.clear();
@@ -249,8 +290,41 @@ TEST(Contacts, CellsOfAFoamAreThoseThatThereAre) {
       for (int axis = 0; axis < 3; ++axis) p[axis] = std::round(1e6 * p[axis] + 0.3 * (c % 3)) / 1e6;
     cells.push_back({"cell " + std::to_string(c), cell});
   }
-  const Complex joined = joined_at(cells, .2);
-  expect_in_contact(joined, volumes, 1e-5);
+  return cells;
+}
+
+TEST(Contacts, CellsOfAFoamAreThoseThatThereAre) {
+  std::vector<double> volumes;
+  const std::vector<Body> cells = rounded_cells(12, 3, volumes);
+  expect_in_contact(joined_at(cells, .2), volumes, 1e-5);
+}
+
+/// Vertices of different cells that are the same are one there.
+TEST(Contacts, CellsOfAFoamInOneFileWithoutNames) {
+  std::vector<double> volumes;
+  SurfaceMesh all;
+  std::map<std::array<double, 3>, VertexIndex> number;
+  for (const Body& cell : rounded_cells(12, 3, volumes))
+    for (const Triangle& t : cell.surface.triangles) {
+      Triangle made{};
+      for (int i = 0; i < 3; ++i) {
+        const Vec3 p = cell.surface.points[t[i]];
+        const auto [at, is_new] = number.try_emplace({p.x, p.y, p.z}, static_cast<VertexIndex>(number.size()));
+        if (is_new) all.points.push_back(p);
+        made[i] = at->second;
+      }
+      all.triangles.push_back(made);
+    }
+  ASSERT_LT(all.points.size(), 3 * volumes.size() * 8);
+  for (const auto cells : {ComplexOptions::Cells::kRegions, ComplexOptions{}.cells}) {
+    ComplexOptions options;
+    options.cells = cells;
+    const std::optional<Complex> complex = cells::complex_of_walls(all, options, {.2, {}}, {});
+    ASSERT_TRUE(complex);
+    // The larger ones come first.
+    std::sort(volumes.rbegin(), volumes.rend());
+    expect_in_contact(*complex, volumes, 1e-5);
+  }
 }
 
 TEST(Contacts, ASheetThatEndsJustBeforeAWall) {
