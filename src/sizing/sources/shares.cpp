@@ -127,7 +127,14 @@ std::vector<SourceShares::Asked> SourceShares::least_at_all(const std::vector<Pl
   // What is asked in batches is asked for all places at once.
   const bool is_batched = std::ranges::any_of(places_, [](const AtPlace& s) { return s.at.batched != nullptr; });
   if (!is_batched) {
-    parallel_for(places.size(), [&](std::size_t i) { asked[i] = least_at(places[i], face); });
+    // Places of one triangle are asked for by one thread: see GapFinder::width().
+    std::vector<std::size_t> first;
+    for (std::size_t i = 0; i < places.size(); ++i)
+      if (i == 0 || places[i].on.face != places[i - 1].on.face) first.push_back(i);
+    first.push_back(places.size());
+    parallel_for(first.size() - 1, [&](std::size_t k) {
+      for (std::size_t i = first[k]; i < first[k + 1]; ++i) asked[i] = least_at(places[i], face);
+    });
     return asked;
   }
   for (const Place& place : places) least_at(place, face);
