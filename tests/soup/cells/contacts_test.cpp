@@ -274,6 +274,18 @@ TEST(Contacts, WallsFartherApartStay) {
   EXPECT_NEAR(joined_at(plates(1, .01), .2).volumes[1], 1.01, 1e-12);
 }
 
+TEST(Contacts, AnEdgeInTheMiddleOfAFace) {
+  // Boxes that stand side by side on another one: the edge between them ends amid its face.
+  const SurfaceMesh low = testing::box(2, 1, 1), high = testing::cube(1);
+  for (const double gap : {0.0, 1e-6, -1e-6, 1e-3}) {
+    SCOPED_TRACE(gap);
+    const auto at = [&](double x) { return testing::transformed(high, 1, {x, 0, 1 + gap}); };
+    const Complex complex = joined_at({{"low", low}, {"left", at(-.3)}, {"right", at(.7 + gap)}}, .2);
+    expect_in_contact(complex, {2, 1, 1}, 3e-3);
+    EXPECT_GT(shortest_edge(complex.surface), .05);
+  }
+}
+
 /// Each cell written by itself, with so few digits that its faces are no planes any more and divided in other ways.
 std::vector<Body> rounded_cells(int sites, unsigned seed, std::vector<double>& volumes) {
   testing::ConvexCells foam({1, 1, 1});
