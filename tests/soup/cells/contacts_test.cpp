@@ -123,7 +123,24 @@ TEST(Contacts, FineWallsComeToCoarseOnesInAnyOrder) {
       EXPECT_TRUE(self_intersections(complex->surface.points, complex->surface.triangles).empty());
     }
     EXPECT_EQ(is_said(bolt_first, "those of the coarser body"), sides == 13);
+    EXPECT_FALSE(is_said(bolt_first, "could not be made one everywhere"));
   }
+}
+
+TEST(Contacts, WhatCouldNotBeMadeOneIsSaid) {
+  // Walls that end flush with each other, with facets that cut deep into the other's.
+  const SurfaceMesh ring = faceted_ring(6, 1, 2.2, 1);
+  const double given = 2 * std::sin(std::acos(-1) / 48);
+  int split = 0;
+  for (const double turn : {.03, .065, .1}) {
+    SCOPED_TRACE(turn);
+    const Complex complex = joined_at({{"ring", ring}, {"bolt", faceted_pin(48, 1, -.7, 1, turn)}}, .35);
+    const bool is_split = shortest_edge(complex.surface) < .5 * given;
+    EXPECT_TRUE(!is_split || is_said(complex, "could not be made one everywhere: "));
+    split += is_split;
+    EXPECT_EQ(complex.volumes.size(), 2U);
+  }
+  EXPECT_GT(split, 0) << "mended: choose others";
 }
 
 TEST(Contacts, KeptTrianglesAreNotFlat) {
