@@ -72,11 +72,9 @@ std::vector<std::array<VertexIndex, 2>> ends_of(const Features& features, const 
 }  // namespace
 
 InputForce::InputForce(const BoundaryInput& input) : input_(input), is_complex_(is_complex(input.surface)) {
-  if (is_complex_) {
-    segments_ = tree_of_segments(input.surface, input.features.edges);
-    curve_ = curves_of(input.features, input.surface.points.size());
-    ends_ = ends_of(input.features, curve_, input.surface.points.size());
-  }
+  segments_ = tree_of_segments(input.surface, input.features.edges);
+  curve_ = curves_of(input.features, input.surface.points.size());
+  ends_ = ends_of(input.features, curve_, input.surface.points.size());
   for (const Edge& e : input.features.edges) {
     lines_.push_back(e);
     lines_.push_back({e[1], e[0]});
@@ -100,6 +98,16 @@ InputForce::Cause InputForce::cause_at(Vec3 center, double h) const {
   }
   if (wedge >= kPlaces) return Cause::kWedge;
   return thin >= kPlaces ? Cause::kThin : Cause::kNone;
+}
+
+InputForce::Cause InputForce::cause_of(const std::array<Vec3, 4>& element) const {
+  const Vec3 center = centroid(element[0], element[1], element[2], element[3]);
+  const double h = std::sqrt(longest_squared_edge(element[0], element[1], element[2], element[3]));
+  if (const Cause cause = cause_at(center, h); cause != Cause::kNone) return cause;
+  for (std::size_t i = 0; i < 4; ++i)
+    for (std::size_t j = 0; j <= i; ++j)
+      if (wall_at((element[i] + element[j]) / 2, center, h).thickness < kThin * h) return Cause::kThin;
+  return is_complex_ ? Cause::kNone : between_near_curves(center, h);
 }
 
 /// How thick the body is at the point of the surface nearest to p, up to the sheet that faces the other way.

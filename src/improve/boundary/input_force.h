@@ -4,6 +4,7 @@
 
 #include "improve/boundary/boundary_input.h"
 
+#include <array>
 #include <optional>
 #include <utility>
 #include <vector>
@@ -23,6 +24,9 @@ class InputForce {
   };
   /// Why elements of size h (input units) around `center` may have to be poor. Rays and directions are sampled.
   Cause cause_at(Vec3 center, double h) const;
+  /// The same of one element, looked at more closely: sheets at its corners and edges, and lines side by side also
+  /// where they could merge, as around a hole much narrower than it.
+  Cause cause_of(const std::array<Vec3, 4>& element) const;
 
  private:
   struct Wall {
@@ -39,7 +43,7 @@ class InputForce {
   const bool is_complex_;
   std::vector<Edge> lines_;                              ///< both directions of every feature edge, sorted
   std::vector<std::pair<double, VertexIndex>> corners_;  ///< corners of the input by their x
-  /// Of a complex, in which lines that are near cannot merge: its feature edges, and the curve that each belongs to.
+  /// Its feature edges, and the curve that each belongs to. In a complex lines that are near cannot merge.
   std::optional<TriangleTree> segments_;
   std::vector<std::uint32_t> curve_;
   std::vector<std::array<VertexIndex, 2>> ends_;  ///< of each curve, by its number; kNone

@@ -100,8 +100,7 @@ bool is_poor(const EditMesh& mesh, TetIndex t) {
 
 Shortfall::Cause cause_by_input(const EditMesh& mesh, TetIndex t, const InputForce& force) {
   const auto [a, b, c, d] = mesh.tet(t);
-  const Vec3 p = mesh.point(a), q = mesh.point(b), r = mesh.point(c), s = mesh.point(d);
-  switch (force.cause_at(centroid(p, q, r, s), std::sqrt(longest_squared_edge(p, q, r, s)))) {
+  switch (force.cause_of({mesh.point(a), mesh.point(b), mesh.point(c), mesh.point(d)})) {
     case InputForce::Cause::kWedge:
       return Shortfall::kWedge;
     case InputForce::Cause::kCorner:

@@ -24,6 +24,8 @@
 #include "pipeline/stages/volume_tolerance.h"
 
 #include <algorithm>
+#include <array>
+#include <cstdint>
 #include <optional>
 #include <string>
 #include <utility>
@@ -95,6 +97,15 @@ bool wants_all(const Domain& domain, const Prepared& input, const Filled& filled
          owes_volume(input, filled.boundary, run);
 }
 
+/// What of the input is narrow at an element; nullopt also where other ranks have it.
+std::optional<NarrowPlace> narrow_place_of(const Prepared& input, const Filled& filled, std::uint64_t tet,
+                                           const Options& options) {
+  if (filled.tets != Tets::kAll || tet >= filled.mesh.tets.size()) return std::nullopt;
+  std::array<Vec3, 4> element;
+  for (std::size_t i = 0; i < 4; ++i) element[i] = filled.mesh.points[filled.mesh.tets[tet][i]];
+  return narrow_place_at(input.surface.mesh(), element, keeps_surface(options));
+}
+
 /// `fins`: of the domain's lines and points, which it has as sheets; null: it has none.
 Result generate_once(const Domain& domain, const Options& asked, const RunContext& context, Fins* fins,
                      const Checkpoints& checkpoints) {
@@ -142,7 +153,7 @@ Result generate_once(const Domain& domain, const Options& asked, const RunContex
     describe_input_volumes(input, filled, run.report);
     if (!filled.layers) describe_sizes(filled.mesh, filled.boundary.sizes, run.report, comm_of(filled, run));
     note_volumes(input, filled, run.options, run.report, stage);
-    note_least(run.report, stage);
+    note_least(run.report, stage, [&](std::uint64_t tet) { return narrow_place_of(input, filled, tet, run.options); });
   });
   if (context.ranks == nullptr || !context.ranks->shares_tets) make_whole(filled, run);
   return {std::move(filled.mesh), filled.boundary.sizes, run.close(), filled.tets == Tets::kShare};

@@ -143,7 +143,7 @@ void require_of(const TetMesh& mesh, const std::optional<LongestEdge>& longest, 
   throw RequirementError(words, std::move(made));
 }
 
-void note_least(const Report& report, const Stage& stage) {
+void note_least(const Report& report, const Stage& stage, const PlaceOfElement& place) {
   const QualitySummary& q = report.quality;
   if (q.elements == 0 || (q.beta_min >= kPoorBeta && q.dihedral_min >= kPoorAngle)) return;
   Finding found;
@@ -157,6 +157,10 @@ void note_least(const Report& report, const Stage& stage) {
                   {"dihedral_min_degrees", q.dihedral_min},
                   {"elements_below_beta_0.2", static_cast<double>(q.beta_classes[0])}};
   found.at = q.dihedral_min_at;
+  if (const std::optional<NarrowPlace> narrow = place ? place(q.dihedral_min_tet) : std::nullopt) {
+    found.text += ": " + narrow->words;
+    found.values.emplace_back("input_degrees", narrow->degrees);
+  }
   stage.note(std::move(found));
 }
 

@@ -10,7 +10,10 @@
 #include <octafront/tet_mesh.h>
 
 #include "base/core/stage.h"
+#include "pipeline/stages/narrow_place.h"
 
+#include <cstdint>
+#include <functional>
 #include <optional>
 
 namespace octafront {
@@ -36,6 +39,8 @@ void require_of(const TetMesh& mesh, const std::optional<LongestEdge>& longest, 
                 const Report& report);
 
 /// Says how poor the least element is if no solver would like it: beta below .2, or a dihedral angle below 10 degrees.
-void note_least(const Report& report, const Stage& stage);
+/// `place`: what of the input is narrow at an element, by its number, if that is known.
+using PlaceOfElement = std::function<std::optional<NarrowPlace>(std::uint64_t tet)>;
+void note_least(const Report& report, const Stage& stage, const PlaceOfElement& place = {});
 
 }  // namespace octafront

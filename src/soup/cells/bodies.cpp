@@ -3,6 +3,7 @@
 #include <octafront/complex.h>
 #include <octafront/repair.h>
 
+#include "base/core/elementary.h"
 #include "base/core/utf8.h"
 #include "base/core/wording.h"
 #include "base/geometry/measures.h"
@@ -17,6 +18,7 @@
 #include <cmath>
 #include <iterator>
 #include <map>
+#include <numbers>
 #include <numeric>
 #include <optional>
 #include <queue>
@@ -562,10 +564,17 @@ bool has_new_short_edges(const JoinedWay& way, const Together& all) {
   return way.shape.shortest < kMuchShorter * given;
 }
 
+/// The sine of the narrowest wedge of bodies by themselves; joined, some have that part of it.
+double own_wedge(const Together& all) {
+  SurfaceMesh before;
+  before.points = all.points, before.triangles = all.triangles;
+  return shape_of_walls(before).narrowest;
+}
+constexpr double kAsNarrow = 0.9;
+
 /// Bodies that fit as they are, but for what is nearer than `within`: with wedges that they have by themselves only, as
 /// their last digits change them.
 std::optional<JoinedWay> fitting_within(double within, double own, const Joining& joining, double size) {
-  constexpr double kAsNarrow = 0.9;
   const Together& all = joining.all;
   const MisfitLimits limits{within, size};
   const Misfits close({all.points, all.triangles, all.body}, limits, joining.context);
@@ -584,9 +593,7 @@ std::optional<JoinedWay> fitting_within(double within, double own, const Joining
 /// Bodies that fit but for the last digits of their coordinates, as cells of a foam do: there, what looks like facets
 /// of a curve apart from another is a wedge where three cells meet.
 std::optional<JoinedWay> fitting_way(const Joining& joining, double size) {
-  SurfaceMesh before;
-  before.points = joining.all.points, before.triangles = joining.all.triangles;
-  const double own = shape_of_walls(before).narrowest;
+  const double own = own_wedge(joining.all);
   // Parts of the size: with six digits, or four, of what has ten elements across.
   for (const double last_digits : {1e-4, 1e-3}) {
     const double within = std::min(last_digits * size, joining.options.tolerance.value_or(HUGE_VAL));
@@ -620,6 +627,34 @@ JoinedWay best_way(const Joining& joining, double size) {
   return std::move(*best);
 }
 
+/// Where walls did not come together well, and of which regions.
+std::string place_in_words(const Complex& complex, const Edge& at) {
+  std::set<std::string> names;
+  const SurfaceMesh& surface = complex.surface;
+  for (std::size_t t = 0; t < surface.triangles.size(); ++t) {
+    const Triangle& c = surface.triangles[t];
+    if (std::ranges::find(c, at[0]) == c.end() || std::ranges::find(c, at[1]) == c.end()) continue;
+    for (const std::uint32_t r : surface.sides_of(t))
+      if (r < surface.region_names.size()) names.insert(fmt::format("\"{}\"", surface.region_names[r]));
+  }
+  return fmt::format("near {}, beside {}", at_point((surface.points[at[0]] + surface.points[at[1]]) / 2),
+                     fmt::join(names, " and "));
+}
+
+/// What is left between walls that could not come together whole.
+void note_unsound(const JoinedWay& way, std::vector<std::string>& notes) {
+  const WallShape& shape = way.shape;
+  const double cosine = std::sqrt(1 - shape.narrowest * shape.narrowest);
+  const double degrees = elementary::atan2(shape.narrowest, cosine) * 180 / std::numbers::pi;
+  notes.push_back(
+      fmt::format("walls of bodies that nearly touch could not be made one everywhere: {} are left, the worst {}, and "
+                  "poor elements "
+                  "there; facets that fit each other, or finer ones of the coarser body, mend that",
+                  shape.has_no_wedge() ? fmt::format("edges down to {:.2g}", shape.shortest)
+                                       : fmt::format("wedges down to {:.2g} degrees", degrees),
+                  place_in_words(way.joined.complex, shape.at)));
+}
+
 }  // namespace
 
 Joined joined_bodies(const std::vector<Body>& bodies, const ComplexOptions& options, const ElementsToCome& elements,
@@ -633,6 +668,9 @@ Joined joined_bodies(const std::vector<Body>& bodies, const ComplexOptions& opti
   const Misfits misfits({all.points, all.triangles, all.body}, limits, context);
   JoinedWay best = best_way({bodies, options, all, misfits, context}, limits.size);
   std::vector<std::string>& notes = best.joined.complex.notes;
+  const bool is_narrower = best.shape.narrowest < kAsNarrow * own_wedge(all);
+  if (misfits.largest() > misfits.floor() && !best.is_sound() && (is_narrower || has_new_short_edges(best, all)))
+    note_unsound(best, notes);
   notes.insert(notes.begin(), before.notes.begin(), before.notes.end());
   return std::move(best.joined);
 }

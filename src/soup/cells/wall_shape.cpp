@@ -70,12 +70,20 @@ WallShape shape_of_walls(const SurfaceMesh& complex) {
   WallShape shape;
   const EdgeTable table = make_edge_table(complex.points.size(), complex.triangles);
   for (std::size_t e = 0; e < table.size(); ++e) {
-    shape.shortest =
-        std::min(shape.shortest, distance(complex.points[table.edges[e][0]], complex.points[table.edges[e][1]]));
+    const Edge& edge = table.edges[e];
+    const double long_by = distance(complex.points[edge[0]], complex.points[edge[1]]);
+    if (long_by < shape.shortest) {
+      shape.shortest = long_by;
+      if (shape.has_no_wedge()) shape.at = edge;
+    }
     const std::vector<Vec3> ways = ways_across(complex, table, e);
     for (std::size_t i = 0; i < ways.size(); ++i)
-      for (std::size_t j = 0; j < i; ++j)
-        if (dot(ways[i], ways[j]) > 0) shape.narrowest = std::min(shape.narrowest, length(cross(ways[i], ways[j])));
+      for (std::size_t j = 0; j < i; ++j) {
+        const double sine = length(cross(ways[i], ways[j]));
+        if (dot(ways[i], ways[j]) <= 0 || sine >= shape.narrowest) continue;
+        shape.narrowest = sine;
+        shape.at = edge;
+      }
   }
   return shape;
 }

@@ -15,6 +15,7 @@ inline constexpr double kWideWedge = 0.34;
 struct WallShape {
   double shortest = HUGE_VAL;     ///< edge
   double narrowest = kWideWedge;  ///< sine of a wedge, up to that
+  Edge at{};                      ///< the edge of that wedge; of none, the shortest
   double worth() const { return shortest * narrowest; }
   bool has_no_wedge() const { return narrowest >= kWideWedge; }
 };

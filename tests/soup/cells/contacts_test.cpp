@@ -123,7 +123,24 @@ TEST(Contacts, FineWallsComeToCoarseOnesInAnyOrder) {
       EXPECT_TRUE(self_intersections(complex->surface.points, complex->surface.triangles).empty());
     }
     EXPECT_EQ(is_said(bolt_first, "those of the coarser body"), sides == 13);
+    EXPECT_FALSE(is_said(bolt_first, "could not be made one everywhere"));
   }
+}
+
+TEST(Contacts, WhatCouldNotBeMadeOneIsSaid) {
+  // Walls that end flush with each other, with facets that cut deep into the other's.
+  const SurfaceMesh ring = faceted_ring(6, 1, 2.2, 1);
+  const double given = 2 * std::sin(std::acos(-1) / 48);
+  int split = 0;
+  for (const double turn : {.03, .065, .1}) {
+    SCOPED_TRACE(turn);
+    const Complex complex = joined_at({{"ring", ring}, {"bolt", faceted_pin(48, 1, -.7, 1, turn)}}, .35);
+    const bool is_split = shortest_edge(complex.surface) < .5 * given;
+    EXPECT_TRUE(!is_split || is_said(complex, "could not be made one everywhere: "));
+    split += is_split;
+    EXPECT_EQ(complex.volumes.size(), 2U);
+  }
+  EXPECT_GT(split, 0) << "mended: choose others";
 }
 
 TEST(Contacts, KeptTrianglesAreNotFlat) {
@@ -272,6 +289,18 @@ TEST(Contacts, WallsFartherApartStay) {
   EXPECT_NEAR(joined_at(plates(1, .1), .2).volumes[1], 1, 1e-12);
   EXPECT_NEAR(joined_at(plates(.02, .01), .2).volumes[1], .02, 1e-12);
   EXPECT_NEAR(joined_at(plates(1, .01), .2).volumes[1], 1.01, 1e-12);
+}
+
+TEST(Contacts, AnEdgeInTheMiddleOfAFace) {
+  // Boxes that stand side by side on another one: the edge between them ends amid its face.
+  const SurfaceMesh low = testing::box(2, 1, 1), high = testing::cube(1);
+  for (const double gap : {0.0, 1e-6, -1e-6, 1e-3}) {
+    SCOPED_TRACE(gap);
+    const auto at = [&](double x) { return testing::transformed(high, 1, {x, 0, 1 + gap}); };
+    const Complex complex = joined_at({{"low", low}, {"left", at(-.3)}, {"right", at(.7 + gap)}}, .2);
+    expect_in_contact(complex, {2, 1, 1}, 3e-3);
+    EXPECT_GT(shortest_edge(complex.surface), .05);
+  }
 }
 
 /// Each cell written by itself, with so few digits that its faces are no planes any more and divided in other ways.
