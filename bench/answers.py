@@ -18,6 +18,7 @@ sys.path.insert(0, str(pathlib.Path(__file__).resolve().parent))
 import answers_meshers as meshers  # noqa: E402
 import answers_page as page  # noqa: E402
 from answers_cases import all_cases  # noqa: E402
+from answers_check import check  # noqa: E402
 from answers_planar import write_step  # noqa: E402
 from answers_solved import solve  # noqa: E402
 from origin import ORIGIN  # noqa: E402
@@ -120,6 +121,7 @@ def main():
     parser.add_argument("--constants", action="store_true")
     parser.add_argument("--program", type=pathlib.Path)
     a = parser.parse_args()
+    check()
     program = (a.program or a.build / "cli/octafront").resolve()
     kept = Kept(a.build / "experiments/answers.json")
     for case in all_cases():

@@ -214,19 +214,20 @@ def beam(p):
     return u, v
 
 
-def cantilever():
-    def end(at, normal):
-        force = np.zeros_like(at)
-        force[:, 1] = SHEAR_FORCE / (2 * INERTIA) * (HALF**2 - at[:, 1] ** 2)
-        return force
+def beam_end(at, normal):
+    force = np.zeros_like(at)
+    force[:, 1] = SHEAR_FORCE / (2 * INERTIA) * (HALF**2 - at[:, 1] ** 2)
+    return force
 
+
+def cantilever():
     def right():
         tip = float(beam(np.zeros((1, 3)))[1][0])
         return tip, SHEAR_FORCE * BEAM_WIDE * tip / 2, SHEAR_FORCE * LONG * HALF / INERTIA
     wall = plane(X, LONG)
     return Case("cantilever", "100 x 20 x 10, both faces held (plane strain), a parabola of shear at its end, at the wall the displacements of theory: Timoshenko and Goodier, exact. Deflection of the tip; "
                 "bending stress along the edges of the wall, root mean square.", lambda occ: occ.addBox(0, -HALF, 0, LONG, 2 * HALF, BEAM_WIDE),
-                [(wall, X, lambda p: beam(p)[0]), (wall, Y, lambda p: beam(p)[1]), (plane(Z, 0), Z, 0), (plane(Z, BEAM_WIDE), Z, 0)], [(plane(X, 0), end)],
+                [(wall, X, lambda p: beam(p)[0]), (wall, Y, lambda p: beam(p)[1]), (plane(Z, 0), Z, 0), (plane(Z, BEAM_WIDE), Z, 0)], [(plane(X, 0), beam_end)],
                 (0, HALF, 0), Y, both(wall, lambda p: np.abs(np.abs(p[:, 1]) - HALF) < ON_FACE), lambda p, s: np.abs(s[:, 0]), right)
 
 

@@ -1,7 +1,10 @@
 """References: plane strain or axial symmetry, second order, far finer at a notch than meshes in space can be. And bodies drawn from the same outlines."""
+import contextlib
 import dataclasses
 import functools
 import math
+import os
+import sys
 import typing
 
 import gmsh
@@ -40,10 +43,25 @@ def drawn(draw):
     gmsh.model.occ.synchronize()
 
 
+@contextlib.contextmanager
+def silence():
+    """For OpenCASCADE, which tells standard output that it writes."""
+    sys.stdout.flush()
+    kept, nowhere = os.dup(1), os.open(os.devnull, os.O_WRONLY)
+    os.dup2(nowhere, 1)
+    try:
+        yield
+    finally:
+        os.dup2(kept, 1)
+        os.close(kept)
+        os.close(nowhere)
+
+
 def write_step(draw, path):
     """Returns volume and diagonal of the body."""
     drawn(draw)
-    gmsh.write(str(path))
+    with silence():
+        gmsh.write(str(path))
     (dim, tag), = gmsh.model.getEntities(3)
     box = gmsh.model.occ.getBoundingBox(dim, tag)
     return gmsh.model.occ.getMass(dim, tag), math.dist(box[:3], box[3:])
