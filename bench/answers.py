@@ -3,7 +3,7 @@
 Usage: bench/run.sh answers [--only CASE] [--missing] [--constants] [--program OCTAFRONT]
 Each body (answers_cases.py) is meshed from the same STEP file, in first and second order: with each mesher's defaults, with sizes that would give about 500 to
 60,000 elements were nothing finer, and, second order, with more elements a turn; a row of runs ends where its stress is good enough or a run would be
-too large. --constants: three of the bodies with other constants of our automatic sizes, at several factors of them.
+too large. --constants: three of the bodies at several sizes, elements a turn and gradations, which automatic sizes choose from.
 CPU seconds of whole processes, one thread. What was found is kept in BUILD/experiments/answers.json (--missing: only what is not there), from which
 docs/measured/answers.md is written.
 """
@@ -27,7 +27,7 @@ SOLVE_SECONDS, MESH_SECONDS = 60, 60
 MOST_UNKNOWNS = 110_000  # what CalculiX's direct solver ends in a minute: in the cube about a cavity they are the dearest
 GOOD_ENOUGH = 0.4  # percent of stress; finer runs of a row would say nothing of 1 %
 COUNTS = {1: (2_000, 8_000, 20_000, 60_000), 2: (500, 2_000, 8_000, 20_000)}
-TURNS = (18, 24, 36, 48)
+TURNS = (18, 24, 36, 48, 72)
 REGULAR = 0.118  # volume of a regular tetrahedron of edge 1
 
 
@@ -59,14 +59,15 @@ def runs(program, order, volume, diagonal):
 
 
 CONSTANTS_OF = ("plate, hole of 0.3 of its width", "stepped shaft", "cavity")
-FACTORS = (1.6, 1, 0.63, 0.4)
+PARTS, NOTCH_TURNS, GRADATIONS = (10, 14, 20, 28), (8, 12, 16, 20, 32, 48), (.12, .2, .3, .4)
 
 
-def constants(program):
-    """Rows by what is changed; within each the factor of automatic sizes falls."""
-    rows = [("as they are", ())] + [(f"{k} a turn", ("--curvature", k)) for k in (8, 12, 16, 20)] + [(f"gradation {g}", ("--gradation", g)) for g in (.12, .2, .3, .4)]
-    return [Run("Octafront", f"{name}, factor {factor}", "constant " + name, meshers.octafront(program, *more, "--automatic-factor", factor))
-            for name, more in rows for factor in FACTORS]
+def constants(program, diagonal):
+    """Rows by what stays; along each elements a turn grow."""
+    def run(row, part, turn, *more):
+        return Run("Octafront", f"{turn} a turn", "constant " + row, meshers.octafront(program, "--size", f"{diagonal / part:.4g}", "--curvature", turn, *more))
+    return ([run(f"diagonal/{part}", part, turn) for part in PARTS for turn in NOTCH_TURNS] +
+            [run(f"diagonal/14, gradation {g}", 14, turn, "--gradation", g) for g in GRADATIONS for turn in NOTCH_TURNS])
 
 
 def measured(case, step, run, order):
@@ -132,7 +133,7 @@ def main():
             step = pathlib.Path(folder) / "body.step"
             volume, diagonal = write_step(case.build, step)
             for order in (2,) if a.constants else (1, 2):
-                campaign(a, kept, case, step, constants(program) if a.constants else runs(program, order, volume, diagonal), order)
+                campaign(a, kept, case, step, constants(program, diagonal) if a.constants else runs(program, order, volume, diagonal), order)
     page.write(kept.found, GOOD_ENOUGH, MOST_UNKNOWNS)
 
 

@@ -44,9 +44,9 @@ def steady(*vector):
 
 @dataclasses.dataclass
 class Case:
-    """`build(occ)` makes the body. `held`: (where, degree of freedom, value or function of points); `loads`: (where, traction). `place`, `along`: whose displacement is
-    compared. `peak(points, stress)`: the stress that counts, at the corners that are `hot`; worst=True: the largest of them, else the root mean
-    square of their errors. `right()`: displacement, work of loads, peak stress."""
+    """`build(occ)` makes the body. `held`: (where, degree of freedom, value or function of points); `loads`: (where, traction). `place`, `along`:
+    whose displacement is compared. `peak(points, stress)`: the stress that counts, at the corners that are `hot`; worst=True: the largest of them,
+    else the root mean square of their errors. `right()`: displacement, work of loads, peak stress. `about` says {found} where a `model` tells them."""
     name: str
     about: str
     build: typing.Callable
@@ -112,7 +112,9 @@ def lame():
 
 
 def pipe():
-    return Case("thick pipe", "Inner radius 10, outer 20, height 10, pressure inside, ends free: Lamé. Displacement of the inner wall; hoop stress on it, root mean square over its nodes.",
+    return Case("thick pipe",
+                "Inner radius 10, outer 20, height 10, pressure inside, ends free: Lamé. Displacement of the inner wall; hoop stress on it, root mean "
+                "square over its nodes.",
                 quarter_ring(INNER, OUTER, HIGH), [(plane(X, 0), X, 0), (plane(Y, 0), Y, 0), (plane(Z, 0), Z, 0)], [(pillar(INNER), pressure(LOAD))],
                 (INNER, 0, 0), X, pillar(INNER), hoop, lame)
 
@@ -124,8 +126,10 @@ def heat():
     def right():
         warm = FLUX * SMALL / CONDUCTIVITY * math.log(OUTER / SMALL)
         return warm, FLUX * warm * math.pi / 4 * SMALL * HIGH, FLUX
-    return Case("heat", "A hollow cylinder of radii 5 and 20, height 10, heat flows in through the inner wall, the outer one is held at 0. Temperature and heat flux of the inner wall (root "
-                "mean square over its nodes) stand for displacement and stress.", quarter_ring(SMALL, OUTER, HIGH), [(pillar(OUTER), 0, 0)],
+    return Case("heat",
+                "A hollow cylinder of radii 5 and 20, height 10, heat flows in through the inner wall, the outer one is held at 0. Temperature and heat "
+                "flux of the inner wall (root mean square over its nodes) stand for displacement and stress.",
+                quarter_ring(SMALL, OUTER, HIGH), [(pillar(OUTER), 0, 0)],
                 [(pillar(SMALL), steady(FLUX))], (SMALL, 0, 0), 0, pillar(SMALL), lambda p, q: np.hypot(q[:, 0], q[:, 1]), right, heat=True)
 
 
@@ -140,9 +144,11 @@ def plate(ratio):
     def outline(occ):
         return occ.cut([(2, occ.addRectangle(0, 0, 0, long, wide))], [(2, occ.addDisk(0, 0, 0, HOLE, HOLE))])[0][0][1]
     model = planar.Model(outline, [(plane(X, 0), X), (plane(Y, 0), Y)], [(plane(X, long), (LOAD, 0.0))], (long, 0.0), X, pillar(HOLE), HOLE)
-    return Case(f"plate, hole of {ratio:g} of its width", f"A hole of radius 5 in a plate {2 * wide:.4g} wide and {2 * long:g} long, pulled; both faces held (plane strain, whose stresses in the plane are "
-                f"those of plane stress). Displacement of the end; stress where the hole is widest, root mean square over the nodes of that edge. Howland 1930: {published} of the mean "
-                "stress at the ends; {found}.", planar.raised(outline, THICK), [(plane(X, 0), X, 0), (plane(Y, 0), Y, 0), (plane(Z, 0), Z, 0), (plane(Z, THICK), Z, 0)],
+    return Case(f"plate, hole of {ratio:g} of its width",
+                f"A hole of radius 5 in a plate {2 * wide:.4g} wide and {2 * long:g} long, pulled; both faces held (plane strain, whose stresses in the "
+                f"plane are those of plane stress). Displacement of the end; stress where the hole is widest, root mean square over the nodes of that "
+                f"edge. Howland 1930: {published} of the mean stress at the ends; {{found}}.",
+                planar.raised(outline, THICK), [(plane(X, 0), X, 0), (plane(Y, 0), Y, 0), (plane(Z, 0), Z, 0), (plane(Z, THICK), Z, 0)],
                 [(plane(X, long), steady(LOAD, 0, 0))], (long, 0, 0), X, both(plane(X, 0), plane(Y, HOLE)), lambda p, s: s[:, 0], lambda: model.right(THICK),
                 model=model)
 
@@ -163,8 +169,10 @@ def bracket():
     top = both(plane(Y, LEG), lambda p: p[:, 0] > corner - ON_FACE)
     round_ = both(pillar(FILLET, corner, corner), lambda p: (p[:, 0] < corner + ON_FACE) & (p[:, 1] < corner + ON_FACE))
     model = planar.Model(bracket_outline, [(plane(Y, ARM), Y)], [(top, (0.0, -1.0))], (ARM, 0.0), Y, round_, FILLET, fixed=(((0.0, ARM), X),), nominal=1.0)
-    return Case("bracket", "Legs 80 long, 20 wide, a fillet of radius 5 in the corner, 10 deep, both faces held (plane strain); one leg's end held along it, pressure of 1 on the other leg. Displacement of that "
-                "leg's end; largest principal stress of the fillet's nodes; {found}.", planar.raised(bracket_outline, DEEP),
+    return Case("bracket",
+                "Legs 80 long, 20 wide, a fillet of radius 5 in the corner, 10 deep, both faces held (plane strain); one leg's end held along it, "
+                "pressure of 1 on the other leg. Displacement of that leg's end; largest principal stress of the fillet's nodes; {found}.",
+                planar.raised(bracket_outline, DEEP),
                 [(plane(Y, ARM), Y, 0), (plane(Z, 0), Z, 0), (plane(Z, DEEP), Z, 0)], [(top, pressure(1.0))], (ARM, 0, 0), Y, round_,
                 lambda p, s: first_principal(s), lambda: model.right(DEEP), worst=True, model=model, fixed_nodes=(((0, ARM, 0), X),))
 
@@ -194,8 +202,11 @@ def shaft():
         return near & (np.abs(np.hypot(r - THIN - ROUND, p[:, 1] - STEP - ROUND) - ROUND) < ON_FACE)
     model = planar.Model(shaft_outline, [(plane(X, 0), X), (plane(Y, 0), Y)], [(plane(Y, REST), (0.0, LOAD))], (0.0, REST), Y,
                          pillar(ROUND, THIN + ROUND, STEP + ROUND), ROUND, around=True)
-    return Case("stepped shaft", f"Radii 20 and 10, fillet 2, pulled. Displacement of the end; largest principal stress of the fillet's nodes. Peterson's chart by Pilkey's formula: {pilkey():.3f} of the thin part's "
-                "mean stress, and S. M. Tipton, J. R. Sorem and R. D. Rolovic found in 1996 that such charts are low; {found}.", planar.turned(shaft_outline), [(plane(X, 0), X, 0), (plane(Y, 0), Y, 0), (plane(Z, 0), Z, 0)],
+    return Case("stepped shaft",
+                f"Radii 20 and 10, fillet 2, pulled. Displacement of the end; largest principal stress of the fillet's nodes. Peterson's chart by "
+                f"Pilkey's formula: {pilkey():.3f} of the thin part's mean stress, and S. M. Tipton, J. R. Sorem and R. D. Rolovic found in 1996 that "
+                f"such charts are low; {{found}}.",
+                planar.turned(shaft_outline), [(plane(X, 0), X, 0), (plane(Y, 0), Y, 0), (plane(Z, 0), Z, 0)],
                 [(plane(Y, REST), steady(0, LOAD, 0))], (0, REST, 0), Y, round_, lambda p, s: first_principal(s), lambda: model.right(0.25), worst=True,
                 model=model)
 
@@ -225,8 +236,10 @@ def cantilever():
         tip = float(beam(np.zeros((1, 3)))[1][0])
         return tip, SHEAR_FORCE * BEAM_WIDE * tip / 2, SHEAR_FORCE * LONG * HALF / INERTIA
     wall = plane(X, LONG)
-    return Case("cantilever", "100 x 20 x 10, both faces held (plane strain), a parabola of shear at its end, at the wall the displacements of theory: Timoshenko and Goodier, exact. Deflection of the tip; "
-                "bending stress along the edges of the wall, root mean square.", lambda occ: occ.addBox(0, -HALF, 0, LONG, 2 * HALF, BEAM_WIDE),
+    return Case("cantilever",
+                "100 x 20 x 10, both faces held (plane strain), a parabola of shear at its end, at the wall the displacements of theory: Timoshenko and "
+                "Goodier, exact. Deflection of the tip; bending stress along the edges of the wall, root mean square.",
+                lambda occ: occ.addBox(0, -HALF, 0, LONG, 2 * HALF, BEAM_WIDE),
                 [(wall, X, lambda p: beam(p)[0]), (wall, Y, lambda p: beam(p)[1]), (plane(Z, 0), Z, 0), (plane(Z, BEAM_WIDE), Z, 0)], [(plane(X, 0), beam_end)],
                 (0, HALF, 0), Y, both(wall, lambda p: np.abs(np.abs(p[:, 1]) - HALF) < ON_FACE), lambda p, s: np.abs(s[:, 0]), right)
 
@@ -283,8 +296,10 @@ def cavity():
     def build(occ):
         occ.cut([(3, occ.addBox(0, 0, 0, BLOCK, BLOCK, BLOCK))], [(3, occ.addSphere(0, 0, 0, CAVITY))])
     sides = [(plane(k, BLOCK), cavity_load) for k in range(3)]
-    return Case("cavity", "A spherical cavity of radius 5, an eighth, in a cube of 15 that carries the tractions of Goodier's solution for a body without end that is pulled. Displacement of the cavity's pole; "
-                "stress along its equator, root mean square.", build, [(plane(k, 0), k, 0) for k in range(3)], sides, (0, 0, CAVITY), Z, both(plane(Z, 0), ball(CAVITY)),
+    return Case("cavity",
+                "A spherical cavity of radius 5, an eighth, in a cube of 15 that carries the tractions of Goodier's solution for a body without end that "
+                "is pulled. Displacement of the cavity's pole; stress along its equator, root mean square.",
+                build, [(plane(k, 0), k, 0) for k in range(3)], sides, (0, 0, CAVITY), Z, both(plane(Z, 0), ball(CAVITY)),
                 lambda p, s: s[:, 2], right)
 
 
@@ -316,8 +331,10 @@ def torsion():
         torque = constant * SHEAR * TWIST * (2 * BAR) ** 4 / 4
         return TWIST * BAR_LONG * BAR, torque * TWIST * BAR_LONG / 2, float(torsion_shear(np.array([[BAR, 0.0, 0.0]]))[1][0])
     flat = plane(Z, 0)
-    return Case("torsion", "A square bar of side 10, 20 long, a quarter of it, twisted by Saint-Venant's shear at its end (torsion constant .1406 of side⁴). Displacement of a corner; shear along the middle of a "
-                "side, root mean square.", lambda occ: occ.addBox(0, 0, 0, BAR, BAR, BAR_LONG),
+    return Case("torsion",
+                "A square bar of side 10, 20 long, a quarter of it, twisted by Saint-Venant's shear at its end (torsion constant .1406 of side⁴). "
+                "Displacement of a corner; shear along the middle of a side, root mean square.",
+                lambda occ: occ.addBox(0, 0, 0, BAR, BAR, BAR_LONG),
                 [(flat, X, 0), (flat, Y, 0), (plane(X, 0), Y, 0), (plane(X, 0), Z, 0), (plane(Y, 0), X, 0), (plane(Y, 0), Z, 0)], [(plane(Z, BAR_LONG), end)],
                 (BAR, BAR, BAR_LONG), Y, both(plane(X, BAR), plane(Y, 0)), lambda p, s: s[:, 4], right)
 

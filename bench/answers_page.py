@@ -5,6 +5,7 @@ import pathlib
 from origin import written_by
 
 PAGE = pathlib.Path("docs/measured/answers.md")
+HERE = pathlib.Path(__file__).resolve().parent
 MEASURES = ("displacement", "energy", "stress")
 
 
@@ -19,7 +20,7 @@ def cells(r):
 
 
 def table(head, lines):
-    return ["| " + " | ".join(head) + " |", "|" + " --- |" * len(head), *lines, ""]
+    return "\n".join(["| " + " | ".join(head) + " |", "|" + " --- |" * len(head), *lines])
 
 
 def between(a, b, measure, bound, of):
@@ -60,11 +61,16 @@ WAYS = (("Octafront, sizes", "Octafront", "size"), ("Gmsh, sizes", "Gmsh", "size
         ("Gmsh, a turn", "Gmsh", "turn"))
 
 
+def belongs(r, row):
+    """A row of elements a turn begins with the 12 of the default."""
+    return r["row"] == row or (row == "turn" and r["row"] == "default" and r["what"] in ("standard", "12 a turn"))
+
+
 def summary(rows, cases, order, measure, bound):
     ways = [w for w in WAYS if any(r["who"] == w[1] and r["row"] == w[2] and r["order"] == order for r in rows)]
     lines = []
     for case in cases:
-        mine = [[r for r in rows if (r["case"], r["who"], r["row"], r["order"]) == (case, who, row, order)] for _, who, row in ways]
+        mine = [[r for r in rows if (r["case"], r["who"], r["order"]) == (case, who, order) and belongs(r, row)] for _, who, row in ways]
         best = [reached(m, measure, bound) for m in mine]
         lines.append("| " + " | ".join([case, *(in_words(b) for b in best)]) + " |")
     return table(["case", *(w[0] for w in ways)], lines)
@@ -90,61 +96,53 @@ def mean(values):
 
 
 def constants(rows):
+    """Where a row never comes to 1 %, its mean has no meaning."""
     rows = [r for r in rows if r["row"].startswith("constant ")]
     if not rows:
-        return []
-    cases, names = (list(dict.fromkeys(r[k] for r in rows)) for k in ("case", "row"))
+        return ""
+    cases, names, turns = (list(dict.fromkeys(r[k] for r in rows)) for k in ("case", "row", "what"))
     lines = []
     for name in names:
         found = [reached([r for r in rows if (r["row"], r["case"]) == (name, case)], "stress", 1) for case in cases]
         whole = two_digits(mean([f[1] for f in found])) if all(f and f[0] != "> " for f in found) else ""
         lines.append("| " + " | ".join([name[9:], *(in_words(f) for f in found), whole]) + " |")
-    at_one = [r for r in rows if r["what"].endswith("factor 1") and "stress" in r]
-    plain = ["| " + " | ".join([name[9:], *(f"{two_digits(r['unknowns'])}: {percent(r['stress'])}" for case in cases for r in at_one if (r["row"], r["case"]) == (name, case))]) + " |" for name in names]
-    return ["## Constants of automatic sizes", "", "Second order, by `--constants`: unknowns to 1 % of stress, when all automatic sizes are scaled by `--automatic-factor` (1.6 to .4), and their geometric mean.", "",
-            *table(["constant", *cases, "mean"], lines), "And at a factor of 1, unknowns and the error of stress in percent.", "", *table(["constant", *cases], plain)]
+    plain = (f"{capital(case)}, unknowns and the error of stress in percent:\n\n" + table(["constant", *turns], [
+        "| " + " | ".join([name[9:], *(told(rows, name, case, turn) for turn in turns)]) + " |" for name in names]) for case in cases)
+    return (HERE / "answers_constants.md.in").read_text().format(reached=table(["constant", *cases, "mean"], lines), each="\n\n".join(plain))
 
 
-ABOUT = """# What elements are worth: answers against unknowns and time
-
-{written}. Bodies whose answers are known, drawn with OpenCASCADE's kernel in Gmsh, written as STEP, meshed by three programs, solved by CalculiX 2.20 (SPOOLES, C3D4 and C3D10,
-DC3D4 and DC3D10 for heat), all with one thread; CPU seconds of whole processes, reading the STEP file too. Loads are consistent nodal forces and supports are by place, computed alike for all meshers.
-*Octafront*: `--preset draft`, nothing, `--preset fine`, `--size H`, `--curvature K`; *Gmsh* 4.8.4: `-clcurv 12` (or K) and `-clmax H`, all else as it comes; *Netgen* 6.2: its own sizes, `maxh` H. Sizes are those at which regular tetrahedra
-would fill the body with 2,000 to 60,000 (second order 500 to 20,000). Second order is each mesher's own. *Unknowns* are degrees of freedom that are not held. *Stress*: averaged at nodes, as CalculiX writes it, at the known place; *energy*: the work of the loads. FEniCSx is left out.
-A row of runs ends where its stress is within {good} %, or before {most:,} unknowns, which CalculiX would take more than a minute for.
-
-"""
+def told(rows, name, case, turn):
+    r = next((r for r in rows if (r["row"], r["case"], r["what"]) == (name, case, turn)), {})
+    return f"{two_digits(r['unknowns'])}: {percent(r['stress'])}" if "stress" in r else r.get("error", "")
 
 
-def summaries(rows, cases):
-    text = ["## Fewest unknowns and least time to 1 % of stress", "", "Second order: unknowns from which on the stress is within 1 %, between runs on a line of logarithms, and the seconds of meshing and solving together there. "
-            "≤: the first run is within; >: the last is not.", "", *summary(rows, cases, 2, "stress", 1)]
-    text += ["First order, to **10 %** of stress (1 % is beyond all these runs):", "", *summary(rows, cases, 1, "stress", 10)]
-    text += ["First order, to 1 % of energy:", "", *summary(rows, cases, 1, "energy", 1)]
-    text += ["## Where defaults lie", "", "Unknowns, and the error of stress in percent. Second order:", "", *defaults(rows, cases, 2), "First order:", "", *defaults(rows, cases, 1)]
-    return text
+def capital(text):
+    return text[0].upper() + text[1:]
+
+
+HEAD = ["mesher", "how", "elements", "unknowns", "displacement, %", "energy, %", "stress, %", "mesh, s", "solve, s"]
 
 
 def each(rows, cases):
-    head = ["mesher", "how", "elements", "unknowns", "displacement, %", "energy, %", "stress, %", "mesh, s", "solve, s"]
-    text = ["## Each case", ""]
+    text = []
     for case, says in cases.items():
-        text += [f"### {case[0].upper()}{case[1:]}", "", says, ""]
+        text += [f"### {capital(case)}", says]
         for order in (1, 2):
             mine = [r for r in rows if (r["case"], r["order"]) == (case, order) and not r["row"].startswith("constant")]
-            text += [f"Order {order}:", "", *table(head, [cells(r) for r in sorted(mine, key=lambda r: (r["who"] != "Octafront", r["who"]))])]
-    return text
+            text += [f"Order {order}:", table(HEAD, [cells(r) for r in sorted(mine, key=lambda r: (r["who"] != "Octafront", r["who"]))])]
+    return "\n\n".join(text)
 
 
 def said():
     """What was written by hand."""
     mark = "## What it says\n"
     text = PAGE.read_text() if PAGE.is_file() else ""
-    return [mark + text.split(mark)[1].split("\n## ")[0].rstrip("\n"), ""] if mark in text else []
+    return mark + text.split(mark)[1].split("\n## ")[0].rstrip("\n") + "\n\n" if mark in text else ""
 
 
 def write(found, good, most):
     rows, cases = list(found["runs"].values()), found["cases"]
-    text = [ABOUT.format(written=written_by("bench/run.sh answers", {r["origin"] for r in rows}), good=good, most=most).rstrip("\n"), "", *said()]
-    text += summaries(rows, cases) + constants(rows) + each(rows, cases)
-    PAGE.write_text("\n".join(text).rstrip("\n") + "\n")
+    PAGE.write_text((HERE / "answers.md.in").read_text().format(
+        written=written_by("bench/run.sh answers", {r["origin"] for r in rows}), good=good, most=most, said=said(),
+        second_stress=summary(rows, cases, 2, "stress", 1), first_stress=summary(rows, cases, 1, "stress", 10), first_energy=summary(rows, cases, 1, "energy", 1),
+        second_defaults=defaults(rows, cases, 2), first_defaults=defaults(rows, cases, 1), constants=constants(rows), cases=each(rows, cases)))

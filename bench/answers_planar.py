@@ -79,7 +79,8 @@ class Flat:
 
 
 def nodes_of(dim, kind):
-    return np.concatenate([np.array(n, int) for e in gmsh.model.getEntities(dim) for t, _, n in [gmsh.model.mesh.getElements(*e)] for t, n in zip(t, n) if t == kind])
+    made = (gmsh.model.mesh.getElements(*entity) for entity in gmsh.model.getEntities(dim))
+    return np.concatenate([np.array(n, int) for kinds, _, nodes in made for k, n in zip(kinds, nodes) if k == kind])
 
 
 def meshed(outline, notch, size):
@@ -119,8 +120,8 @@ def middle_of(line):
 
 @dataclasses.dataclass(eq=False)
 class Model:
-    """`held`: (where, degree of freedom); `loads`: (where, traction); displacement of `place` along an axis; the largest principal stress of nodes at the `notch`, whose
-    radius is given. `around`: about the y axis."""
+    """`held`: (where, degree of freedom); `loads`: (where, traction); displacement of `place` along an axis; the largest principal stress of nodes
+    at the `notch`, whose radius is given. `around`: about the y axis."""
     outline: typing.Callable
     held: list
     loads: list
@@ -143,7 +144,8 @@ class Model:
 
     def told(self):
         fine, coarse = (a[2] / self.nominal for a in self.answers)
-        return f"{'an axially symmetric' if self.around else 'a plane'} model with {FINE} edges to the notch's radius says {fine:.4f}, and that is taken (with {COARSER}: {coarse:.4f})"
+        kind = "an axially symmetric" if self.around else "a plane"
+        return f"{kind} model with {FINE} edges to the notch's radius says {fine:.4f}, and that is taken (with {COARSER}: {coarse:.4f})"
 
     def forces(self, mesh):
         forces = np.zeros((len(mesh.points), 2))
