@@ -42,7 +42,7 @@ source scripts/lib/apt.sh
 
 case ${1:-} in
   status | derived | pipeline | surface | elements | gradation | volume | graded | peers | complexes | improve | adapt | adapt_loops | formats | parts | second_order | dry_run | repair | known_answers | damage | images | thin | budget | cad | layers | layers_shapes | layers_flows | layers_peers | layers_solved | inside | periodic | ranks | threads | answers) ;;
-  *) sed -n '2,37s/^# \{0,1\}//p' "$0"; exit 2 ;;
+  *) sed -n '2,38s/^# \{0,1\}//p' "$0"; exit 2 ;;
 esac
 need_packages "${build_packages[@]}" python3
 [ "$1" != surface ] || need_packages gmsh netgen libcgal-dev libgmp-dev libmpfr-dev
