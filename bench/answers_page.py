@@ -101,6 +101,7 @@ def constants(rows):
     if not rows:
         return ""
     cases, names, turns = (list(dict.fromkeys(r[k] for r in rows)) for k in ("case", "row", "what"))
+    names.sort(key=lambda name: ("," in name, int(name.split("/")[1].split(",")[0]), name))  # of rows that were added later, too
     lines = []
     for name in names:
         found = [reached([r for r in rows if (r["row"], r["case"]) == (name, case)], "stress", 1) for case in cases]
