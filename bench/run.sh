@@ -34,13 +34,15 @@
 #   bench/run.sh ranks       one mesh by 1, 2, 4 and 8 processes: memory, bytes, imbalance, what all do alike -> docs/measured/ranks.md
 #   bench/run.sh threads     what is serial in each stage, and what that predicts for 2, 16 and 64 threads -> docs/measured/threads.md
 #   bench/run.sh dry_run     mesh --dry-run: elements, time and memory said and taken -> docs/use/command-line.md
+#   bench/run.sh answers     bodies with known answers, meshed by ours, Gmsh and Netgen, solved by CalculiX: errors against unknowns and time;
+#                            --constants: other constants of automatic sizes  -> docs/measured/answers.md
 set -euo pipefail
 cd "$(dirname "$0")/.."
 source scripts/lib/apt.sh
 
 case ${1:-} in
-  status | derived | pipeline | surface | elements | gradation | volume | graded | peers | complexes | improve | adapt | adapt_loops | formats | parts | second_order | dry_run | repair | known_answers | damage | images | thin | budget | cad | layers | layers_shapes | layers_flows | layers_peers | layers_solved | inside | periodic | ranks | threads) ;;
-  *) sed -n '2,35s/^# \{0,1\}//p' "$0"; exit 2 ;;
+  status | derived | pipeline | surface | elements | gradation | volume | graded | peers | complexes | improve | adapt | adapt_loops | formats | parts | second_order | dry_run | repair | known_answers | damage | images | thin | budget | cad | layers | layers_shapes | layers_flows | layers_peers | layers_solved | inside | periodic | ranks | threads | answers) ;;
+  *) sed -n '2,38s/^# \{0,1\}//p' "$0"; exit 2 ;;
 esac
 need_packages "${build_packages[@]}" python3
 [ "$1" != surface ] || need_packages gmsh netgen libcgal-dev libgmp-dev libmpfr-dev
@@ -49,6 +51,7 @@ need_packages "${build_packages[@]}" python3
 [ "$1" != thin ] || need_packages tetgen gmsh
 [ "$1" != cad ] || need_packages gmsh netgen "${cad_packages[@]}"
 [ "$1" != cad ] || [ -d cad-models ] || scripts/get-cad.sh
+[ "$1" != answers ] || need_packages gmsh python3-gmsh netgen calculix-ccx python3-numpy python3-meshio "${cad_packages[@]}"
 [ "$1" != peers ] || need_packages "${peer_packages[@]}" libcgal-dev libgmp-dev libmpfr-dev libboost-dev
 [ "$1" != ranks ] || need_packages "${mpi_packages[@]}"
 [ "$1" != complexes ] || need_packages "${test_packages[@]}" tetgen gmsh python3-gmsh
@@ -61,7 +64,7 @@ need_packages "${build_packages[@]}" python3
 [ "$1" != layers_peers ] || need_packages python3-gmsh
 [ "$1" != images ] || need_packages libcgal-dev libgmp-dev libmpfr-dev libboost-dev
 [ "$1" != images ] || [ -d volumes ] || scripts/get-volumes.sh
-[ "$1" = formats ] || [ "$1" = ranks ] || [ "$1" = adapt ] || [ "$1" = complexes ] || [ "$1" = images ] || [ "$1" = thin ] || [ "$1" = cad ] || [ -d models/clean ] || scripts/get-models.sh --ct
+[ "$1" = formats ] || [ "$1" = ranks ] || [ "$1" = adapt ] || [ "$1" = complexes ] || [ "$1" = images ] || [ "$1" = thin ] || [ "$1" = cad ] || [ "$1" = answers ] || [ -d models/clean ] || scripts/get-models.sh --ct
 tests=OFF
 [ "$1" != complexes ] && [ "$1" != known_answers ] || tests=ON  # what makes complexes is theirs, and a judge
 mpi=()
@@ -69,6 +72,7 @@ mpi=()
 cmake --preset release -DOCTAFRONT_BUILD_TESTS=$tests "${mpi[@]}" >/dev/null
 cmake --build --preset release --target octafront_cli octafront_evaluate octafront_judge_surface
 [ "$1" != cad ] || cmake --build --preset release --target octafront_cad_program octafront_judge_cad
+[ "$1" != answers ] || cmake --build --preset release --target octafront_cad_program
 [ "$1" != derived ] || [ -d models/derived ] || scripts/derive-models.sh build/release/cli/octafront
 [ "$1" != adapt ] || cmake --build --preset release --target octafront_adapt_cases octafront_python
 [ "$1" != adapt_loops ] || cmake --build --preset release --target octafront_adapt_loops
@@ -84,5 +88,5 @@ cmake --build --preset release --target octafront_cli octafront_evaluate octafro
 [[ $1 != layers_* ]] || [ -d models/flows ] || scripts/get-flows.sh build/release/cli/octafront
 python=python3
 [ "$1" != repair ] && [ "$1" != known_answers ] && [ "$1" != damage ] || python=/usr/bin/python3  # Debian's, with its NumPy
-[[ $1 != layers_* ]] && [ "$1" != inside ] && [ "$1" != periodic ] || python=/usr/bin/python3
+[[ $1 != layers_* ]] && [ "$1" != inside ] && [ "$1" != periodic ] && [ "$1" != answers ] || python=/usr/bin/python3
 exec "$python" "bench/$1.py" build/release "${@:2}"

@@ -1,6 +1,6 @@
 """Netgen (Debian: netgen), through its library: its front on a kept surface, and its STL mesher, which triangulates anew.
 
-As a program of its own, which these run:  python3 -m peers.netgen SURFACE.off|CAD MESH.mesh [SIZE [--vol]]
+As a program of its own, which these run:  python3 -m peers.netgen SURFACE.off|CAD MESH.mesh [SIZE [--vol] [--second-order]]
 """
 import ctypes
 import pathlib
@@ -29,6 +29,12 @@ def mesh_cad(file, folder, timeout, size, own_format=False):
     return run(file, folder, timeout, size, *(["--vol"] if own_format else []))
 
 
+def mesh_cad_for_solver(file, folder, timeout, size, order):
+    """Meshes a STEP file with Netgen's own sizes, none larger than `size`, as out.msh (Gmsh 2.2): tetrahedra of 4 nodes or of 10."""
+    outcome = run(file, folder, timeout, size, "--msh", *(["--second-order"] if order == 2 else []))
+    return finish(outcome, pathlib.Path(folder) / "out.msh")
+
+
 def run(surface, folder, timeout, *more):
     bench = pathlib.Path(__file__).resolve().parent.parent
     out = pathlib.Path(folder).resolve() / "out.mesh"
@@ -38,6 +44,9 @@ def run(surface, folder, timeout, *more):
     if stage:
         outcome.stage_seconds = float(stage[1])
     return finish(outcome, out)
+
+
+TET10 = 4  # NG_TET10 of nglib.h
 
 
 class Parameters(ctypes.Structure):
@@ -139,6 +148,7 @@ def mesh_cad_surface(library, file, size):
         status = function(library, name, ctypes.c_int, pointer, pointer, pointer)(geometry, mesh, ctypes.byref(parameters))
         if status != 0:
             sys.exit(f"error: netgen's {name[2:].split('EPP')[0]} returned {status}")
+    parameters.geometry = geometry
     return mesh, parameters, start
 
 
@@ -157,6 +167,10 @@ def remesh_in_process(surface, out, size):
     by = mesh_cad_surface if pathlib.Path(surface).suffix.lower() in CAD_READERS else mesh_stl_surface
     mesh, parameters, start = by(library, surface, size)
     fill_mesh(library, mesh, parameters, start)
+    if "--second-order" in sys.argv:
+        function(library, "27Ng_OCC_Generate_SecondOrderEPPvS1_", None, ctypes.c_void_p, ctypes.c_void_p)(parameters.geometry, mesh)
+    if "--msh" in sys.argv:
+        save_tets(library, mesh, pathlib.Path(out).with_suffix(".msh"))
     made = surface_triangles(library, mesh)
     save(library, mesh, made, out)
     if "--vol" in sys.argv:
@@ -164,7 +178,8 @@ def remesh_in_process(surface, out, size):
         function(library, "11Ng_SaveMeshEPPvPKc", None, ctypes.c_void_p, ctypes.c_char_p)(mesh, vol.encode())
 
 
-def save(library, mesh, triangles, out):
+def points_and_tets(library, mesh):
+    """Numbers of nodes count from 0; of second order there are ten."""
     pointer = ctypes.c_void_p
     count = lambda name: function(library, name, ctypes.c_int, pointer)(mesh)
     get_point = function(library, "11Ng_GetPointEPPviPd", None, pointer, ctypes.c_int, pointer)
@@ -175,9 +190,27 @@ def save(library, mesh, triangles, out):
         get_point(mesh, i, xyz)
         points.append(tuple(xyz))
     for i in range(1, count("8Ng_GetNEEPPv") + 1):
-        get_tet(mesh, i, corners)
-        tets.append(tuple(c - 1 for c in corners[:4]))
-    surfaces.write_medit(out, points, triangles, tets)
+        kind = get_tet(mesh, i, corners)
+        tets.append(tuple(c - 1 for c in corners[:10 if kind == TET10 else 4]))
+    return points, tets
+
+
+def save(library, mesh, triangles, out):
+    points, tets = points_and_tets(library, mesh)
+    surfaces.write_medit(out, points, triangles, [tet[:4] for tet in tets])
+
+
+def save_tets(library, mesh, out):
+    """As Gmsh 2.2, whose mid-side nodes come in another order."""
+    points, tets = points_and_tets(library, mesh)
+    with open(out, "w", encoding="utf-8") as f:
+        f.write(f"$MeshFormat\n2.2 0 8\n$EndMeshFormat\n$Nodes\n{len(points)}\n")
+        f.writelines(f"{i} {x!r} {y!r} {z!r}\n" for i, (x, y, z) in enumerate(points, 1))
+        f.write(f"$EndNodes\n$Elements\n{len(tets)}\n")
+        for i, tet in enumerate(tets, 1):
+            order = range(4) if len(tet) == 4 else (0, 1, 2, 3, 4, 7, 5, 6, 9, 8)
+            f.write(f"{i} {4 if len(tet) == 4 else 11} 2 1 1 {' '.join(str(tet[k] + 1) for k in order)}\n")
+        f.write("$EndElements\n")
 
 
 if __name__ == "__main__":
