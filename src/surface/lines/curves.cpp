@@ -240,6 +240,27 @@ void copy_division(const HalfEdgeMesh& mesh, const PeriodicCell& cell, const Cur
 
 }  // namespace
 
+namespace {
+
+/// Curves that turn by more than this, in radians, are arcs, and get no fewer segments than asked for: a quarter of a
+/// circle by 18 a turn five, not four. This much less than one is none.
+constexpr double kArc = 0.5, kPartOfSegment = 0.1;
+
+bool is_arc(const HalfEdgeMesh& mesh, const Curve& curve) {
+  double turned = 0;
+  const auto way = [&](HalfEdge h) { return normalized(mesh.points[mesh.end(h)] - mesh.points[mesh.start[h]]); };
+  for (std::size_t i = 1; i < curve.half_edges.size(); ++i)
+    turned += distance(way(curve.half_edges[i - 1]), way(curve.half_edges[i]));
+  return turned > kArc;
+}
+
+int segments_of(const HalfEdgeMesh& mesh, const Curve& curve, double wanted) {
+  const double most = std::min(wanted, 1e9);
+  return static_cast<int>(is_arc(mesh, curve) ? std::ceil(most - kPartOfSegment) : std::lround(most));
+}
+
+}  // namespace
+
 std::vector<Curve> chain_curves(const InputSurface& input, const std::vector<VertexIndex>& corners,
                                 const std::vector<std::uint8_t>& is_fixed, const SizeField& sizes) {
   const HalfEdgeMesh& mesh = input.mesh;
@@ -295,7 +316,7 @@ void divide_curves(const InputSurface& input, const SizeField& sizes, std::vecto
     measures.push_back(measure(input, sizes, curves[i]));
     const Edge e = ends(curves[i]);
     const int least = e[0] == e[1] ? 3 : 1;
-    segments.push_back(std::max(least, static_cast<int>(std::lround(std::min(measures.back().total, 1e9)))));
+    segments.push_back(std::max(least, segments_of(mesh, curves[i], measures.back().total)));
     if (is_elsewhere(i)) segments[i] = segments[twin(i)];
     if (segments.back() == 1 && is_first(i)) ++single[e];
   }

@@ -32,7 +32,8 @@ struct FrontLimits {
   /// Elements that the sizes come to at most, by the prediction. What strips and the deviation ask for beyond that is
   /// given up, and said; what crosses is not.
   double budget = HUGE_VAL;
-  /// Strips and corners ask for no size below this, input units; strips narrower than `narrowest_strip` for none at all.
+  /// Strips and corners ask for no size below this, input units; strips narrower than `narrowest_strip` for none at
+  /// all.
   double least = 0, narrowest_strip = 0;
   /// From strips sizes may rise so fast, or as fast as elsewhere if that is faster.
   double rise = 0;
