@@ -1,18 +1,22 @@
 """Meshes models at automatic size, and writes docs/measured/budget-status.md: the budget of elements, what was made of it, how long
 that took, and what was given up.
 
-Usage: bench/run.sh budget [--only SUBSTRING] [--timeout CPU_SECONDS] [FOLDER_OR_FILE ...]
+Usage: bench/run.sh budget [--only SUBSTRING] [--timeout CPU_SECONDS] [--before PROGRAM] [--gmsh] [--output FILE.md] [FOLDER_OR_FILE ...]
 Without folders: models/clean, models/dirty, and models/derived where there is one. One model at a time, on one thread.
+--before: another octafront on the same models. --gmsh: Gmsh on CAD files, as its users run it, with 12 elements a turn.
 """
 import argparse
 import json
 import pathlib
 import resource
+import shutil
+import statistics
 import subprocess
 import tempfile
 
 from origin import written_by
 
+CAD = (".step", ".stp", ".brep", ".iges", ".igs")
 OVER = 1.3  # met within 30 %
 
 
@@ -27,6 +31,21 @@ def mesh(program, model, seconds):
         if done.returncode < 0:
             return f"no end in {seconds} CPU s"
         return json.loads(report.read_text()) if done.returncode == 0 else f"exit {done.returncode}"
+
+
+def gmsh(model, seconds):
+    """Tetrahedra and CPU seconds, or None."""
+    with tempfile.TemporaryDirectory() as folder:
+        part = pathlib.Path(folder, "part" + {".stp": ".step", ".igs": ".iges"}.get(model.suffix, model.suffix))
+        shutil.copy(model, part)
+        before = resource.getrusage(resource.RUSAGE_CHILDREN)
+        out = part.with_suffix(".mesh")
+        done = subprocess.run(["gmsh", "-3", part, "-clcurv", "12", "-nt", "1", "-o", out], capture_output=True, text=True,
+                              preexec_fn=lambda: resource.setrlimit(resource.RLIMIT_CPU, (seconds, seconds)))
+        after = resource.getrusage(resource.RUSAGE_CHILDREN)
+        lines = out.read_text().split("\n") if done.returncode == 0 and out.exists() else []
+        at = next((i for i, line in enumerate(lines) if line.strip() == "Tetrahedra"), None)
+        return None if at is None else (int(lines[at + 1]), after.ru_utime - before.ru_utime)
 
 
 def counter(report, stage, key):
@@ -51,6 +70,18 @@ def given_up(row):
     return "strips or nearness" if row["spent"] else "details" if row["raised"] else ""
 
 
+def beside(rows, key, name):
+    """What others made of the models that they could mesh, too."""
+    both = [r for r in rows if r.get(key)]
+    if not both:
+        return []
+    times = sorted(r["tets"] / r[key][0] for r in both)
+    ours, theirs, cpu = sum(r["tets"] for r in both), sum(r[key][0] for r in both), [r["cpu"] / max(.01, r[key][1]) for r in both]
+    return ["", f"Beside {name}, {len(both)} models: {ours:,} elements against {theirs:,} ({ours / theirs:.2f} times); by model {statistics.median(times):.2f} "
+            f"times in the median, {times[int(.95 * (len(times) - 1))]:.2f} at 95 %, {times[-1]:.2f} at most, above 8 times: {sum(t > 8 for t in times)}; "
+            f"CPU seconds {statistics.median(cpu):.2f} times in the median."]
+
+
 def page(rows, failed, command):
     over = [r for r in rows if r["budget"] and r["tets"] > OVER * r["budget"]]
     off = [r for r in rows if abs(r["said"] / r["tets"] - 1) > OVER - 1]
@@ -66,10 +97,14 @@ def page(rows, failed, command):
         + (" (" + ", ".join(r["model"] for r in off) + ")" if off else "")
         + f". Budget spent: {sum(r['spent'] for r in rows)}. Most elements: {max(r['tets'] for r in rows):,}. "
         f"Most CPU time: {max(r['cpu'] for r in rows):.1f} s. Most memory: {max(r['memory'] for r in rows) / 1e6:.0f} MB.",
-        "", "| model | triangles | budget | said | made | least β | least angle | rounds | work | CPU s | MB | given up |",
-        "| --- | --- | --- | --- | --- | --- | --- | --- | --- | --- | --- | --- |"]
+        f"Least angle: {sum(r['angle'] < 5 for r in rows)} models below 5°, {sum(r['angle'] < 15 for r in rows)} below 15°, "
+        f"{statistics.median(r['angle'] for r in rows):.1f}° in the median."]
+    lines += beside(rows, "before", "the program before") + beside(rows, "gmsh", "Gmsh with 12 elements a turn")
+    lines += ["", "| model | triangles | budget | said | made | before | Gmsh | least β | least angle | rounds | work | CPU s | MB | given up |",
+              "| --- | --- | --- | --- | --- | --- | --- | --- | --- | --- | --- | --- | --- | --- |"]
     for r in rows:
-        lines.append(f"| {r['model']} | {r['faces']:,} | {r['budget']:,.0f} | {r['said']:,.0f} | {r['tets']:,} | "
+        before, other = (f"{r[key][0]:,}" if r.get(key) else "" for key in ("before", "gmsh"))
+        lines.append(f"| {r['model']} | {r['faces']:,} | {r['budget']:,.0f} | {r['said']:,.0f} | {r['tets']:,} | {before} | {other} | "
                      f"{r['beta']:.3f} | {r['angle']:.1f} | {r['rounds']} | {r['work']:.1f} | {r['cpu']:.1f} | {r['memory'] / 1e6:.0f} | {given_up(r)} |")
     if failed:
         lines += ["", "Not meshed:", ""] + [f"- {name}: {why}" for name, why in failed]
@@ -88,6 +123,8 @@ def main():
     parser.add_argument("--only", default="")
     parser.add_argument("--timeout", type=int, default=300)
     parser.add_argument("--output", default="docs/measured/budget-status.md", type=pathlib.Path)
+    parser.add_argument("--before", type=pathlib.Path)
+    parser.add_argument("--gmsh", action="store_true")
     options = parser.parse_args()
     paths = options.paths or [f for f in ("models/clean", "models/dirty", "models/derived") if pathlib.Path(f).is_dir()]
     command = " ".join(["bench/run.sh budget", *options.paths])
@@ -101,6 +138,11 @@ def main():
             print(f"{model.name:32} {report}", flush=True)
         else:
             rows.append(figures(model, report))
+            if options.before:
+                other = mesh(options.before, model, options.timeout)
+                rows[-1]["before"] = None if isinstance(other, str) else (other["tets"], other["cpu_seconds"])
+            if options.gmsh and model.suffix in CAD:
+                rows[-1]["gmsh"] = gmsh(model, options.timeout)
             print(f"{model.name:32} {rows[-1]['tets']:>10,} of {rows[-1]['budget']:>10,.0f} {rows[-1]['cpu']:6.1f} s "
                   f"{given_up(rows[-1])}", flush=True)
         options.output.write_text(page(rows, failed, command) if rows else "")
