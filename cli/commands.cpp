@@ -214,6 +214,7 @@ void run_mesh(Session& session) {
   if (result.is_share) write_share_targets(session, result.mesh);
   if (!session.is_first()) return;
   if (!result.is_share) write_mesh_targets(session, result.mesh);
+  recommend_second_order(a, result.report);
   session.tell(result.report);
   tell_worst(session, worst);
   finish_run(session, result.mesh, &result.sizes);

@@ -9,6 +9,7 @@
 #include "ranks.h"
 #include "terminal.h"
 
+#include <algorithm>
 #include <array>
 #include <cstdio>
 #include <cstdlib>
@@ -193,6 +194,23 @@ void write_mesh_targets(Session& session, const TetMesh& as_it_is, std::span<con
   }
   session.found({{"output", all[0]}});
   if (all.size() > 1) session.found({{"outputs", all}});
+}
+
+void recommend_second_order(const Arguments& a, Report& report) {
+  constexpr std::array kOfStructures{"abaqus", "nastran", "ansys", "lsdyna", "febio", "unv", "med"};
+  const auto is_for_structures = [&](std::size_t i) {
+    return std::ranges::find(kOfStructures, format_for(a.meshes[i].string(), options_of(a, i)).name) !=
+           kOfStructures.end();
+  };
+  bool any = false;
+  for (std::size_t i = 0; i < a.meshes.size(); ++i) any = any || is_for_structures(i);
+  if (!any || report.true_volume == 0 || a.options.order > 1 || report.stages.empty()) return;
+  report.stages.back().note(
+      {"first-order",
+       "these are elements of first order, which are 6 to 29 % off in the stress of notches where a tenth of the "
+       "unknowns in second order are as true or truer (docs/measured/answers.md): `order` 2, whose automatic sizes are "
+       "twice as large",
+       ""});
 }
 
 bool takes_shares(const Arguments& a) {

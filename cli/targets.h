@@ -1,6 +1,7 @@
 #pragma once
 
 #include <octafront/mesh_field.h>
+#include <octafront/report.h>
 #include <octafront/tet_mesh.h>
 
 #include "session.h"
@@ -26,6 +27,9 @@ void write_share_targets(Session& session, const TetMesh& share);
 bool some_target_holds_fields(const Arguments& arguments);
 /// Refuses outputs that surfaces alone are not written to. Throws OptionError.
 void check_surface_targets(const Arguments& arguments);
+
+/// Parts from CAD in elements of first order for a solver of structures: says in the report what second order is worth.
+void recommend_second_order(const Arguments& arguments, Report& report);
 
 /// To a file, or to standard output if it is called "-". Throws OutputError.
 void write_text_target(const std::filesystem::path& file, const std::string& text);

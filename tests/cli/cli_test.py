@@ -275,6 +275,14 @@ class CommandLine(unittest.TestCase):
         self.assertEqual(done.stdout, "")
         self.assertIn('the mesh has no patch "none"', done.stderr)
 
+    def test_parts_for_structures_hear_of_second_order(self):
+        program = pathlib.Path(OCTAFRONT).parent / "../cad/octafront-cad"
+        if not program.exists():
+            self.skipTest("no program that reads CAD")
+        for ending, order, says in ((".inp", 1, True), (".inp", 2, False), (".vtu", 1, False)):
+            done = self.run_cli("mesh", SAMPLES / "bracket.step", "--size", 12, "--order", order, "-o", self.dir / f"part{ending}")
+            self.assertEqual("elements of first order" in done.stdout + done.stderr, says, (ending, order))
+
     def test_devices_as_outputs(self):
         whole = self.run_cli("mesh", self.part, "-o", self.dir / "a.mesh") and (self.dir / "a.mesh").read_text()
         self.assertEqual(self.run_cli("mesh", self.part, "-o", "/dev/stdout", "--format", "medit").stdout, whole)

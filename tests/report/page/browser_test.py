@@ -348,7 +348,7 @@ class Browser(unittest.TestCase):
         worst = json.loads(self.report.read_text())["worst_elements"][1]
         after = view.camera()
         self.assertNotEqual(before, after)
-        self.assertLess(after[3], 0.5 * before[3], "nearer")
+        self.assertLess(after[3], 0.75 * before[3], "nearer")
         facts = view.js("const m = octafront.mesh; return [m.facts.origin, m.facts.step, m.middle, m.radius]")
         origin, step, middle, radius = facts
         target = [origin[k] + step * (after[k] * radius + middle[k]) for k in range(3)]
