@@ -15,6 +15,7 @@ import subprocess
 import tempfile
 
 from origin import written_by
+from peers.process import run_measured
 
 CAD = (".step", ".stp", ".brep", ".iges", ".igs")
 OVER = 1.3  # met within 30 %
@@ -38,14 +39,11 @@ def gmsh(model, seconds):
     with tempfile.TemporaryDirectory() as folder:
         part = pathlib.Path(folder, "part" + {".stp": ".step", ".igs": ".iges"}.get(model.suffix, model.suffix))
         shutil.copy(model, part)
-        before = resource.getrusage(resource.RUSAGE_CHILDREN)
-        out = part.with_suffix(".mesh")
-        done = subprocess.run(["gmsh", "-3", part, "-clcurv", "12", "-nt", "1", "-o", out], capture_output=True, text=True,
-                              preexec_fn=lambda: resource.setrlimit(resource.RLIMIT_CPU, (seconds, seconds)))
-        after = resource.getrusage(resource.RUSAGE_CHILDREN)
-        lines = out.read_text().split("\n") if done.returncode == 0 and out.exists() else []
+        run = run_measured(["gmsh", "-3", part, "-clcurv", "12", "-nt", "1", "-o", "out.mesh"], folder, seconds)
+        out = pathlib.Path(folder, "out.mesh")
+        lines = out.read_text().split("\n") if not run.error and out.exists() else []
         at = next((i for i, line in enumerate(lines) if line.strip() == "Tetrahedra"), None)
-        return None if at is None else (int(lines[at + 1]), after.ru_utime - before.ru_utime)
+        return None if at is None else (int(lines[at + 1]), run.cpu_seconds)
 
 
 def counter(report, stage, key):
