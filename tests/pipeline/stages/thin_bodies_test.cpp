@@ -44,6 +44,22 @@ TEST(ThinBodies, AutomaticSizesAreInProportionHoweverSlender) {
   }
 }
 
+TEST(ThinBodies, CoarseAutomaticSizesMakeThemAnew) {
+  for (const double factor : {2.5, 4.0}) {
+    SCOPED_TRACE(factor);
+    Options options;
+    options.size.automatic_factor = factor;
+    const Result r = generate(Domain(testing::rod(24, 0.05, 4)), options);
+    EXPECT_LT(std::abs(volume_change_of(r.report)), 0.01);
+    EXPECT_GT(r.report.quality.dihedral_min, 20);
+    EXPECT_LT(r.report.tets, 10'000u);
+  }
+  const Result needle = generate(Domain(testing::needle(24, 0.05, 4)));
+  EXPECT_LT(std::abs(volume_change_of(needle.report)), 0.01);
+  EXPECT_GT(needle.report.quality.beta_mean, 0.85);
+  EXPECT_LT(needle.report.tets, 80'000u);
+}
+
 TEST(ThinBodies, AGivenSizeDoesNotLoseThem) {
   for (const double size : {0.1, 0.2, 0.5}) {
     SCOPED_TRACE(size);

@@ -23,6 +23,16 @@ using testing::sizes_of;
 using testing::torus;
 using testing::transformed;
 
+TEST(SizeField, AutomaticSizesOfSecondOrderAreTwiceAsLarge) {
+  const SurfaceMesh box = testing::cube(1);
+  const KnownSurface known(box, detect_features(box, 40));
+  StageReport report;
+  const auto size = [&](bool curved) {
+    return make_size_field(known, {}, {RunContext{}, report}, {.curved = curved}).at({0.5, 0.5, 0.5});
+  };
+  EXPECT_DOUBLE_EQ(size(true), 2 * size(false));
+}
+
 /// Thinner than what the automatic size resolves, a plate gets wider elements and not more of them.
 TEST(SizeField, AutomaticSizesFollowThePlateSmoothly) {
   constexpr double kStep = 0.65;  // of the thickness; the count of a plate with one layer falls with its square

@@ -114,6 +114,14 @@ TEST(SizeField, ThinWallsAndNarrowGapsGetElementsAcross) {
   EXPECT_GT(gap.at({1, 1, 0}), 0.18);
 }
 
+TEST(SizeField, AutomaticSizesSeeWallsButNoGapsBetweenThem) {
+  const SurfaceMesh apart = testing::joined(box(2, 2, 1, 1), transformed(box(2, 2, 1, 1), 1, {0, 0, 1.05}));
+  const SizeField gap = sizes_of(apart, {});
+  EXPECT_EQ(gap.at({1, 1, 1}), gap.max_size());
+  const SizeField wall = sizes_of(box(2, 2, 0.05, 1), {});
+  EXPECT_NEAR(wall.at({1, 1, 0.05}), 0.05, 0.01);
+}
+
 TEST(SizeField, EdgesAreNoGaps) {
   SizeOptions o;
   o.gap = 3;

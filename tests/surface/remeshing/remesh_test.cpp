@@ -8,6 +8,7 @@
 #include "base/mesh/feature_patches.h"
 #include "base/mesh/half_edge_mesh.h"
 #include "sizing/search/make_size_field.h"
+#include "support/faceted.h"
 #include "support/named_surfaces.h"
 #include "support/random.h"
 #include "surface/edits/coarsen.h"
@@ -377,6 +378,12 @@ TEST(Remesh, DividesTheLinesOfNarrowStripsFiner) {
   EXPECT_GT(least, 0.4);
   EXPECT_NEAR(r.sizes.at({0, 0.5, 0.01}), 0.03, 0.005);
   EXPECT_NEAR(r.sizes.at({1, 1, 0.01}), 0.1, 0.005) << "far from the rim nothing changes";
+}
+
+TEST(Remesh, ArcsGetNoFewerEdgesThanAsked) {
+  const Remeshed r = remesh(testing::faceted_pin(96, 1, 0, 1.5), 2 * std::numbers::pi / 13.3);
+  const auto on_rim = [](Vec3 p) { return p.z == 0 && std::hypot(p.x, p.y) > 0.99; };
+  EXPECT_EQ(std::ranges::count_if(r.surface.points, on_rim), 14);
 }
 
 TEST(Remesh, LeavesStripsAsTheyComeWhereTold) {
