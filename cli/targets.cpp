@@ -15,6 +15,7 @@
 #include <cstdlib>
 #include <fstream>
 #include <optional>
+#include <ranges>
 
 #include <fmt/core.h>
 #include <unistd.h>
@@ -198,13 +199,12 @@ void write_mesh_targets(Session& session, const TetMesh& as_it_is, std::span<con
 
 void recommend_second_order(const Arguments& a, Report& report) {
   constexpr std::array kOfStructures{"abaqus", "nastran", "ansys", "lsdyna", "febio", "unv", "med"};
+  if (report.true_volume == 0 || a.options.order > 1 || report.stages.empty()) return;
   const auto is_for_structures = [&](std::size_t i) {
     return std::ranges::find(kOfStructures, format_for(a.meshes[i].string(), options_of(a, i)).name) !=
            kOfStructures.end();
   };
-  bool any = false;
-  for (std::size_t i = 0; i < a.meshes.size(); ++i) any = any || is_for_structures(i);
-  if (!any || report.true_volume == 0 || a.options.order > 1 || report.stages.empty()) return;
+  if (std::ranges::none_of(std::views::iota(std::size_t{0}, a.meshes.size()), is_for_structures)) return;
   report.stages.back().note(
       {"first-order",
        "these are elements of first order, which are 6 to 29 % off in the stress of notches where a tenth of the "

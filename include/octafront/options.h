@@ -129,7 +129,8 @@ struct SurfaceOptions {
   std::optional<double> normal_deviation;
   enum class Strips { kOff, kFine };
   /// kFine: where two feature edges run side by side nearer than an element, sizes are smaller, down to .3 of what they
-  /// are (.1 of a complex), for triangles between them have a good shape only then. kOff: they are as they come.
+  /// are (.1 of a complex), for triangles between them have a good shape only then; of SizeOptions::size not where they
+  /// are narrower than a third of it. kOff: they are as they come.
   Strips strips = Strips::kFine;
   /// Each part of the surface that feature edges enclose becomes a patch of its own; parts of a named patch keep its
   /// name, with a number behind it where there are several.

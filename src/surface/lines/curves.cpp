@@ -238,10 +238,6 @@ void copy_division(const HalfEdgeMesh& mesh, const PeriodicCell& cell, const Cur
   for (const CurvePoint& c : of.middles) copy.middles.push_back(copied(c));
 }
 
-}  // namespace
-
-namespace {
-
 /// Curves that turn by more than this, in radians, are arcs, and get no fewer segments than asked for: a quarter of a
 /// circle by 18 a turn five, not four. This much less than one is none.
 constexpr double kArc = 0.5, kPartOfSegment = 0.1;
