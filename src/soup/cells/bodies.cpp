@@ -446,7 +446,7 @@ struct Joining {
 
 /// The bodies as one complex, and how well their walls have come together.
 struct JoinedWay {
-  Joined joined;
+  Complex complex;
   std::uint64_t crossings = 0;
   WallShape shape;
   bool is_sound() const { return crossings == 0 && shape.has_no_wedge(); }
@@ -484,12 +484,28 @@ bool cross_each_other(const ClosedGaps& closed, const RunContext& context) {
   return !self_intersections(closed.points, each, 1, context).empty();
 }
 
+/// Walls that come together cross at the edges of their contacts: about one pair of triangles in two. Where many more
+/// do, they have come together crumpled, and to arrange that takes minutes for nothing.
+bool are_crumpled(const ClosedGaps& closed, const RunContext& context) {
+  constexpr std::size_t kMostPairsPerTriangle = 2;
+  const std::size_t most = kMostPairsPerTriangle * closed.triangles.size();
+  return self_intersections(closed.points, closed.triangles, most + 1, context).size() > most;
+}
+
+/// Nobody overlaps in them any more.
+void clear_slivers(const Slivers::Given& slivers, std::vector<Windings>& windings) {
+  for (std::size_t c = 0; c < windings.size(); ++c)
+    if (slivers.is_sliver[c]) windings[c].clear();
+}
+
 /// Walls that are near come together; what lies between others that belong together is given away as slivers.
 JoinedWay joined_by(const WayTogether& way, const Joining& joining) {
   using Overlap = ComplexOptions::Overlap;
   const auto& [bodies, options, all, misfits, context] = joining;
   const ClosedGaps closed = closed_by(way, all, context);
   if (!way.may_cross && cross_each_other(closed, context)) throw InputError("bodies do not fit: their walls cross");
+  if (closed.triangles.size() > all.triangles.size() && are_crumpled(closed, context))
+    throw InputError("walls of bodies that nearly touch crumple where they come together");
   const Arrangement arranged = arrange(closed.points, closed.triangles, context);
   const Cells cells(arranged.points, arranged.triangles, context);
 
@@ -503,9 +519,7 @@ JoinedWay joined_by(const WayTogether& way, const Joining& joining) {
   const std::size_t end_of_common = labelled.names.size();
   if (options.within_first) empty_outside_first(windings, bodies, labelled);
   const Slivers::Given slivers = Slivers(labelled, windings, body_of, way.place, misfits).give_away();
-  // From here on nobody overlaps in them.
-  for (std::size_t c = 0; c < windings.size(); ++c)
-    if (slivers.is_sliver[c]) windings[c].clear();
+  clear_slivers(slivers, windings);
   const bool earlier = options.overlap == Overlap::kFirst;
   if (options.overlap != Overlap::kNew)
     refuse_covered_bodies(labelled, bodies, windings, earlier, options.within_first ? 1 : 0);
@@ -542,7 +556,7 @@ JoinedWay joined_by(const WayTogether& way, const Joining& joining) {
   notes.insert(notes.end(), complex.notes.begin(), complex.notes.end());
   complex.notes = std::move(notes);
   const WallShape shape = shape_of_walls(complex.surface);
-  return {{std::move(complex), are_nested(windings)}, arranged.new_points, shape};
+  return {std::move(complex), arranged.new_points, shape};
 }
 
 /// Whether bodies that come together by so little have their volumes, and so did not overlap.
@@ -581,7 +595,7 @@ std::optional<JoinedWay> fitting_within(double within, double own, const Joining
   try {
     JoinedWay way = joined_by({&close, Rims::kBend, as_given(close), "earlier", false},
                               {joining.bodies, joining.options, all, close, joining.context});
-    const Complex& complex = way.joined.complex;
+    const Complex& complex = way.complex;
     if (way.shape.narrowest >= kAsNarrow * own && !has_new_short_edges(way, all) &&
         keep_their_volumes(complex, joining.bodies, within) && !leave_gaps(complex.surface, joining.misfits))
       return way;
@@ -652,13 +666,29 @@ void note_unsound(const JoinedWay& way, std::vector<std::string>& notes) {
                   "there; facets that fit each other, or finer ones of the coarser body, mend that",
                   shape.has_no_wedge() ? fmt::format("edges down to {:.2g}", shape.shortest)
                                        : fmt::format("wedges down to {:.2g} degrees", degrees),
-                  place_in_words(way.joined.complex, shape.at)));
+                  place_in_words(way.complex, shape.at)));
 }
 
 }  // namespace
 
-Joined joined_bodies(const std::vector<Body>& bodies, const ComplexOptions& options, const ElementsToCome& elements,
-                     const RunContext& context) {
+namespace {
+
+/// Whether of two bodies that have space in common as they are given, slivers apart, one always lies within the other.
+bool lie_in_each_other(const Joining& joining) {
+  const auto& [bodies, options, all, misfits, context] = joining;
+  const Arrangement arranged = arrange(all.points, all.triangles, context);
+  const Cells cells(arranged.points, arranged.triangles, context);
+  std::vector<Windings> windings = windings_of_bodies(arranged, cells, all.body);
+  Labelled labelled{arranged, cells, {}, {}};
+  for (const Body& b : bodies) labelled.names.push_back(b.name);
+  labelled.region = regions_of(windings, options.overlap, labelled.names);
+  clear_slivers(Slivers(labelled, windings, all.body, as_given(misfits), misfits).give_away(), windings);
+  return are_nested(windings);
+}
+
+/// `nested_only`: else nullopt, before walls are brought together.
+std::optional<Complex> join(const std::vector<Body>& bodies, const ComplexOptions& options,
+                            const ElementsToCome& elements, bool nested_only, const RunContext& context) {
   if (bodies.empty()) throw OptionError("there is no body to join");
   if (options.tolerance && !(*options.tolerance >= 0))
     throw OptionError(fmt::format("`tolerance` is {}; it must not be below 0", *options.tolerance));
@@ -666,24 +696,33 @@ Joined joined_bodies(const std::vector<Body>& bodies, const ComplexOptions& opti
   const Together all = put_together(bodies, before, context);
   const MisfitLimits limits = limits_for(options, elements, bodies);
   const Misfits misfits({all.points, all.triangles, all.body}, limits, context);
-  JoinedWay best = best_way({bodies, options, all, misfits, context}, limits.size);
-  std::vector<std::string>& notes = best.joined.complex.notes;
+  const Joining joining{bodies, options, all, misfits, context};
+  if (nested_only && !lie_in_each_other(joining)) return std::nullopt;
+  JoinedWay best = best_way(joining, limits.size);
+  std::vector<std::string>& notes = best.complex.notes;
   const bool is_narrower = best.shape.narrowest < kAsNarrow * own_wedge(all);
   if (misfits.largest() > misfits.floor() && !best.is_sound() && (is_narrower || has_new_short_edges(best, all)))
     note_unsound(best, notes);
   notes.insert(notes.begin(), before.notes.begin(), before.notes.end());
-  return std::move(best.joined);
+  return std::move(best.complex);
+}
+
+}  // namespace
+
+std::optional<Complex> nested_bodies(const std::vector<Body>& bodies, const ComplexOptions& options,
+                                     const ElementsToCome& elements, const RunContext& context) {
+  return join(bodies, options, elements, true, context);
 }
 
 Complex join_bodies(const std::vector<Body>& bodies, const ComplexOptions& options, const ElementsToCome& elements,
                     const RunContext& context) {
-  return joined_bodies(bodies, options, elements, context).complex;
+  return *join(bodies, options, elements, false, context);
 }
 
 }  // namespace cells
 
 Complex join_bodies(const std::vector<Body>& bodies, const ComplexOptions& options, const RunContext& context) {
-  return cells::joined_bodies(bodies, options, {}, context).complex;
+  return cells::join_bodies(bodies, options, {}, context);
 }
 
 }  // namespace octafront

@@ -10,14 +10,10 @@
 
 namespace octafront::cells {
 
-/// As join_bodies(); `nested`: of two bodies that have space in common, slivers apart, one always lies within the
-/// other.
-struct Joined {
-  Complex complex;
-  bool nested = true;
-};
-Joined joined_bodies(const std::vector<Body>& bodies, const ComplexOptions& options, const ElementsToCome& elements,
-                     const RunContext& context);
+/// As join_bodies() if of two bodies that have space in common, slivers apart, one always lies within the other; else
+/// nullopt.
+std::optional<Complex> nested_bodies(const std::vector<Body>& bodies, const ComplexOptions& options,
+                                     const ElementsToCome& elements, const RunContext& context);
 
 /// As complex_of_walls(), join_bodies() and embed_sheets(), for a mesh of which something is known.
 std::optional<Complex> complex_of_walls(const SurfaceMesh& surface, const ComplexOptions& options,

@@ -3,6 +3,7 @@
 #include "base/core/disjoint_sets.h"
 #include "base/core/groups.h"
 #include "base/core/wording.h"
+#include "base/geometry/self_intersection.h"
 #include "base/mesh/surface_topology.h"
 #include "soup/cells/bodies.h"
 #include "soup/cells/misfit.h"
@@ -152,6 +153,13 @@ bool boxes_meet(const std::vector<Body>& bodies, const MisfitLimits& limits) {
   return false;
 }
 
+/// What is to be mended is no body yet.
+bool cross_themselves(const std::vector<Body>& shells, const RunContext& context) {
+  return std::ranges::any_of(shells, [&](const Body& shell) {
+    return !self_intersections(shell.surface.points, shell.surface.triangles, 1, context).empty();
+  });
+}
+
 bool has_interfaces(const SurfaceMesh& complex) {
   return std::any_of(complex.sides.begin(), complex.sides.end(),
                      [](const Sides& s) { return s[0] != kNone && s[1] != kNone; });
@@ -165,9 +173,9 @@ std::optional<Complex> nested_or_touching(const std::vector<Body>& bodies, const
   try {
     ComplexOptions inner_first = options;
     inner_first.overlap = ComplexOptions::Overlap::kLater;
-    Joined joined = joined_bodies(bodies, inner_first, elements, context);
-    if (!joined.nested || (!asked && !has_interfaces(joined.complex.surface))) return std::nullopt;
-    return std::move(joined.complex);
+    std::optional<Complex> joined = nested_bodies(bodies, inner_first, elements, context);
+    if (joined && !asked && !has_interfaces(joined->surface)) return std::nullopt;
+    return joined;
   } catch (const InputError&) {
     return std::nullopt;
   }
@@ -188,7 +196,7 @@ std::optional<Complex> complex_of_shells(const SurfaceMesh& surface, const Compl
     for (const std::uint32_t t : shells[b].surface.source) shell_of[t] = b;
   const Misfits misfits({draft.mesh.points, draft.mesh.triangles, shell_of}, limits, context);
   // Walls that touch exactly, or are apart, make cells by themselves.
-  if (!(misfits.largest() > 0)) return std::nullopt;
+  if (!(misfits.largest() > 0) || cross_themselves(shells, context)) return std::nullopt;
   // A joined complex counts the faces of all bodies through.
   std::vector<std::uint32_t> face;
   for (Body& shell : shells) {
