@@ -36,6 +36,48 @@ std::vector<std::uint32_t> WorkingMesh::alive_triangles() const {
   return alive;
 }
 
+namespace {
+
+/// The values with these numbers, in their order.
+template <class T>
+std::vector<T> taken(const std::vector<T>& values, const std::vector<std::uint32_t>& numbers) {
+  std::vector<T> some;
+  some.reserve(numbers.size());
+  for (const std::uint32_t i : numbers) some.push_back(values[i]);
+  return some;
+}
+
+std::vector<std::uint32_t> inverse(const std::vector<std::uint32_t>& numbers, std::size_t count) {
+  std::vector<std::uint32_t> to(count, kNone);
+  for (std::uint32_t i = 0; i < numbers.size(); ++i) to[numbers[i]] = i;
+  return to;
+}
+
+}  // namespace
+
+std::vector<VertexIndex> WorkingMesh::compact() {
+  const std::vector<std::uint32_t> triangles = alive_triangles();
+  std::vector<HalfEdge> half_edges;
+  half_edges.reserve(3 * triangles.size());
+  for (const std::uint32_t t : triangles) half_edges.insert(half_edges.end(), {3 * t, 3 * t + 1, 3 * t + 2});
+  std::vector<VertexIndex> vertices;
+  for (VertexIndex v = 0; v < points.size(); ++v)
+    if (outgoing[v] != kNone) vertices.push_back(v);
+  const std::vector<HalfEdge> half_edge = inverse(half_edges, start.size());
+  const std::vector<VertexIndex> vertex = inverse(vertices, points.size());
+  gone += triangle_count() - triangles.size();
+  points = taken(points, vertices), kind = taken(kind, vertices), normal = taken(normal, vertices);
+  size = taken(size, vertices), face = taken(face, vertices), place = taken(place, vertices);
+  changed = taken(changed, vertices), outgoing = taken(outgoing, vertices);
+  start = taken(start, half_edges), twin = taken(twin, half_edges), is_feature = taken(is_feature, half_edges);
+  patch = taken(patch, triangles), origin = taken(origin, triangles);
+  for (HalfEdge& h : outgoing) h = half_edge[h];
+  for (HalfEdge& h : twin) h = half_edge[h];
+  for (VertexIndex& v : start) v = vertex[v];
+  validate(*this);
+  return vertices;
+}
+
 void WorkingMesh::reserve(std::size_t vertices, std::size_t triangles) {
   points.reserve(vertices);
   kind.reserve(vertices);

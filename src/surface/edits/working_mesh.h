@@ -25,7 +25,7 @@ struct CurvePlace {
 };
 
 /// The surface on its way from the input triangulation to the new one: a closed manifold of the same topology after
-/// every operation. Removed triangles and vertices leave holes in the numbering until compacted() is taken.
+/// every operation. Removed triangles and vertices leave holes in the numbering until compact().
 struct WorkingMesh : HalfEdgeMesh {
   /// The input triangulation: every vertex is the input's own, every triangle a whole input face.
   explicit WorkingMesh(const InputSurface& input);
@@ -64,6 +64,10 @@ struct WorkingMesh : HalfEdgeMesh {
     for_each_outgoing(v, [&](HalfEdge h) { mark_changed(end(h)); });
   }
 
+  std::size_t gone = 0;  ///< triangles that compact() has left out
+
+  /// All triangles that were ever made, which is what the work so far has cost.
+  std::size_t made_triangles() const { return triangle_count() + gone; }
   bool is_removed(std::size_t triangle) const { return start[3 * triangle] == kNone; }
   Triangle triangle(std::uint32_t t) const { return {start[3 * t], start[3 * t + 1], start[3 * t + 2]}; }
   /// The triangles that are not removed, in their order.
@@ -77,6 +81,8 @@ struct WorkingMesh : HalfEdgeMesh {
     return n;
   }
 
+  /// Numbers what is left anew, in its order; returns the former number of each vertex. Of surfaces without backs.
+  std::vector<VertexIndex> compact();
   /// Room for so many vertices and triangles in all.
   void reserve(std::size_t vertices, std::size_t triangles);
   VertexIndex add_vertex(Vec3 p, VertexKind k, Vec3 n, double h, std::uint32_t in_face);

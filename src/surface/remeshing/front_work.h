@@ -90,7 +90,7 @@ struct Nearness {
 /// What a round makes.
 struct Draft {
   SizeField sizes;                     ///< that it was made by
-  std::vector<std::uint8_t> is_fixed;  ///< per vertex of the input: it stays where it is
+  std::vector<std::uint8_t> is_fixed;  ///< per vertex: it stays where it is; those beyond its end do not
   std::vector<Curve> curves;           ///< divided
   WorkingMesh mesh;
   Nearness nearness;

@@ -50,7 +50,7 @@ std::ptrdiff_t count_triangles(const std::vector<FarPlace>& places) {
 }
 
 bool are_few(std::ptrdiff_t triangles, const WorkingMesh& mesh, double part) {
-  return static_cast<double>(triangles) < part * static_cast<double>(mesh.triangle_count());
+  return static_cast<double>(triangles) < part * static_cast<double>(mesh.made_triangles());
 }
 
 std::vector<VertexIndex> corners_at(const WorkingMesh& mesh, const std::vector<FarPlace>& places) {
@@ -81,6 +81,7 @@ class PlainFront : public FrontKind {
   void adjust(Draft& draft, const RoundSizes& sizes) override {
     const RunContext& context = work_.stage.context();
     remove_input_vertices(draft.mesh, draft.sizes, context, work_.counts.coarsen);
+    compact(draft);
     work_.progress(0.6);
     work_.counts.merged_lines = merge_all_lines(draft);
     improve_surface(draft.mesh, input_, draft.curves, draft.sizes, context, work_.counts.improve);
@@ -123,6 +124,14 @@ class PlainFront : public FrontKind {
   }
 
  private:
+  /// Of a fine scan little is left, and each step from here on goes through all that is.
+  static void compact(Draft& draft) {
+    std::vector<std::uint8_t> is_fixed;
+    for (const VertexIndex v : draft.mesh.compact())
+      is_fixed.push_back(v < draft.is_fixed.size() ? draft.is_fixed[v] : 0);
+    draft.is_fixed = std::move(is_fixed);
+  }
+
   std::uint64_t merge_all_lines(Draft& draft) const {
     return merge_lines(draft.mesh, draft.is_fixed, work_.tolerance, work_.leeway);
   }
