@@ -543,8 +543,9 @@ void declare_sizes(CLI::App& command, Arguments& a) {
       ->type_name("F")
       ->capture_default_str();
   group
-      ->add_option("--gradation,--grading", o.gradation,
-                   "How fast sizes may change: |h(x) - h(y)| <= G |x - y| [by the spread of sizes, .12 to .4]")
+      ->add_option(
+          "--gradation,--grading", o.gradation,
+          "How fast sizes may change: |h(x) - h(y)| <= G |x - y| [by the spread of sizes, .12 to .4, order 2: .8]")
       ->type_name("G");
   add_choice<SizeOptions::Interior>(
       *group, "--interior", o.interior,

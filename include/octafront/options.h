@@ -86,8 +86,8 @@ struct SizeOptions {
   /// chooses the sizes. In [0.1, 10].
   double automatic_factor = 1;
   /// |h(x) - h(y)| <= gradation |x - y|; in [0.01, 1]. Without a value it follows from how sizes are spread: the least
-  /// from kDefaultGradation to kSteepestGradation that leaves at most 30 % of the elements where sizes only rise from
-  /// smaller ones. Of kept surfaces, and with `elements`, it is kDefaultGradation.
+  /// from kDefaultGradation to kSteepestGradation (second order: 0.8) that leaves at most 30 % of the elements where
+  /// sizes only rise. Of kept surfaces, and of first order with `elements`, it is kDefaultGradation.
   std::optional<double> gradation;
   enum class Interior { kUniform, kGraded };
   /// kUniform: sizes inside stay at most the largest size on the surface (the paper's Cmax).

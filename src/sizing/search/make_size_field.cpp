@@ -144,10 +144,11 @@ SizeField make_size_field(const KnownSurface& known, const SizeOptions& given, c
   const double factor = wanted.automatic && !options.elements ? options.automatic_factor : 1;
   if (factor != 1) wanted = scaled(wanted, factor, options);
   if (!options.elements) refuse_huge_counts(surface, wanted);
-  // Who names a number of elements pays for no more of them, and slow growth makes the better and faster ones.
+  // Who names a number of elements pays for no more of them: of first order slow growth makes the better ones.
   if (!options.gradation)
-    options.gradation =
-        options.elements ? kDefaultGradation : gradation_by_spread(surface, wanted, options, stage.context());
+    options.gradation = options.elements && !rules.curved
+                            ? kDefaultGradation
+                            : gradation_by_spread(surface, wanted, options, rules.curved, stage.context());
   SizeField field = options.elements   ? scaled_to_count(surface, wanted, options, stage)
                     : wanted.automatic ? within_budget(surface, wanted, options, budget, stage)
                                        : source_grid(surface, wanted, options, stage.context());

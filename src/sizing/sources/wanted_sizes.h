@@ -38,6 +38,8 @@ struct FaceRules {
 
 /// An edge of second order has a node in its middle, and says as much as two.
 inline constexpr double kSecondOrderEdge = 2;
+/// The steepest gradation that their spread decides (kSteepestGradation: of first order).
+inline constexpr double kSteepestCurved = 0.8;
 
 /// What all sources together want on a surface, before any of it is put into a grid. Input units.
 struct WantedSizes {

@@ -49,8 +49,10 @@ TEST(SizeField, AutomaticSizesFollowThePlateSmoothly) {
   EXPECT_LT(before, 10'000);
 }
 
-double gradation_of(const SurfaceMesh& surface, const SizeOptions& options) {
-  return as_octree_field(sizes_of(surface, options))->gradation;
+double gradation_of(const SurfaceMesh& surface, const SizeOptions& options, bool curved = false) {
+  const KnownSurface known(surface, {});
+  StageReport report;
+  return as_octree_field(make_size_field(known, options, {RunContext{}, report}, {.curved = curved}))->gradation;
 }
 
 /// Where sizes are alike they rise slowly; towards few small places fast, so that these do not rule the whole.
@@ -64,6 +66,11 @@ TEST(SizeField, GradationFollowsFromTheSpreadOfSizes) {
   const double steep = gradation_of(icosphere(3), spread);
   EXPECT_GE(steep, 0.3);
   EXPECT_LE(steep, 0.4);
+  EXPECT_GT(gradation_of(icosphere(3), spread, true), 0.4);
+  spread.elements = 20'000;
+  EXPECT_EQ(gradation_of(icosphere(3), spread), kDefaultGradation);
+  EXPECT_GT(gradation_of(icosphere(3), spread, true), kDefaultGradation);
+  spread.elements = {};
   spread.gradation = 0.2;
   EXPECT_EQ(gradation_of(icosphere(3), spread), 0.2);
 }
