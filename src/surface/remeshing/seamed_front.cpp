@@ -23,9 +23,10 @@ namespace {
 /// A complex that strays at fewer places than this part of its triangles is not made anew for it.
 constexpr double kVeryFew = 1e-4;
 /// But where it strays at first, with triangles as small as the input's, at more places than this part of their number,
-/// the input is noise: what chords of its steps cut off shrinks only as they do, and each new triangulation crosses
+/// and so many times the triangles leave as many such places, that lie beyond the bound by this part of before, the
+/// input is noise: what chords of its steps cut off shrinks only as they do, and each new triangulation crosses
 /// elsewhere.
-constexpr double kNoise = 0.08;
+constexpr double kNoise = 0.08, kManyMore = 1.5, kNoNearer = 0.5;
 /// So often sizes are made smaller where it strays in a round; there are no more than two for this. (Two in the first
 /// and one in the second are half the time, and leave 208 places of a skull too far where three leave 6, and 138
 /// elements below .4 instead of 27.)
@@ -222,9 +223,12 @@ class SeamedFront : public FrontKind {
 
   /// Smaller sizes and more triangles where it strays, while that helps.
   void refine_far(Draft& draft, DeviationWatch& watch, const SizeField& first) {
+    Straying at_first;
     for (int k = 0; k < kRefinements; ++k) {
       const std::vector<FarPlace> places = far_places(work_, draft.mesh, watch);
-      if (k == 0 && work_.counts.rounds == 1) is_noise_ = strays_as_noise(places, draft);
+      const Straying now = straying(places, draft);
+      if (k == 0) at_first = now;
+      is_noise_ = work_.counts.rounds == 1 && is_noise(at_first, now);
       if (is_noise_) return;
       const std::vector<PointSize> wanted = note_wanted(draft, places);
       if (wanted.empty()) return;
@@ -242,12 +246,27 @@ class SeamedFront : public FrontKind {
     return wanted;
   }
 
-  bool strays_as_noise(const std::vector<FarPlace>& places, const Draft& draft) const {
-    const auto in_vain = std::count_if(places.begin(), places.end(), [&](const FarPlace& p) {
-      return p.distance >= work_.tolerance &&
-             draft.sizes.at(p.at) <= longest_edge_of(work_.known.tree().corners(p.on_input.face));
-    });
-    return static_cast<double>(in_vain) > kNoise * static_cast<double>(front_triangles(draft.mesh).size());
+  /// Where it strays with triangles as small as the input's: at how many places, how far beyond the bound in all; and
+  /// how many triangles there are.
+  struct Straying {
+    double places = 0, beyond = 0, triangles = 0;
+  };
+  Straying straying(const std::vector<FarPlace>& places, const Draft& draft) const {
+    Straying all;
+    all.triangles = static_cast<double>(front_triangles(draft.mesh).size());
+    for (const FarPlace& p : places) {
+      if (p.distance < work_.tolerance) continue;
+      if (draft.sizes.at(p.at) > longest_edge_of(work_.known.tree().corners(p.on_input.face))) continue;
+      ++all.places;
+      all.beyond += p.distance - work_.tolerance;
+    }
+    return all;
+  }
+
+  /// Chords across edges of coarse facets come nearer as they get shorter; in noise there are only more of them.
+  static bool is_noise(const Straying& first, const Straying& now) {
+    return first.places > kNoise * first.triangles && now.triangles > kManyMore * first.triangles &&
+           now.places >= first.places && now.beyond * first.places > kNoNearer * first.beyond * now.places;
   }
 
   /// Points of the complex where the draft strays still. What is left then lies beside seams: another round has to
