@@ -31,36 +31,60 @@ void add_thread(SurfaceMesh& s, int sides, int steps, double turn) {
     }
 }
 
-}  // namespace
+/// Radii and heights.
+using Profile = std::vector<std::pair<double, double>>;
 
-SurfaceMesh faceted_pin(int sides, double radius, double low, double high, double turn) {
-  SurfaceMesh pin;
-  const auto n = static_cast<VertexIndex>(sides);
-  for (const double z : {low, high})
-    for (int i = 0; i < sides; ++i) pin.points.push_back(on_circle(radius, turn + 2 * kPi * i / sides, z));
-  pin.points.push_back({0, 0, low});
-  pin.points.push_back({0, 0, high});
-  for (VertexIndex i = 0; i < n; ++i) {
-    const VertexIndex j = (i + 1) % n;
-    add_quad(pin, i, j, n + j, n + i);
-    pin.triangles.push_back({2 * n, j, i});
-    pin.triangles.push_back({2 * n + 1, n + i, n + j});
-  }
-  return pin;
+void add_circles(SurfaceMesh& s, const Profile& profile, int sides, double turn) {
+  for (const auto& [radius, z] : profile)
+    for (int i = 0; i < sides; ++i) s.points.push_back(on_circle(radius, turn + 2 * kPi * i / sides, z));
 }
 
-SurfaceMesh faceted_ring(int sides, double inner, double outer, double height) {
+/// From its lower end to its upper one, both closed.
+SurfaceMesh turned_stack(const Profile& profile, int sides, double turn) {
+  SurfaceMesh body;
+  const auto n = static_cast<VertexIndex>(sides), rows = static_cast<VertexIndex>(profile.size());
+  add_circles(body, profile, sides, turn);
+  body.points.push_back({0, 0, profile.front().second});
+  body.points.push_back({0, 0, profile.back().second});
+  const VertexIndex low = rows * n, high = low + 1, last = low - n;
+  for (VertexIndex i = 0; i < n; ++i) {
+    const VertexIndex j = (i + 1) % n;
+    for (VertexIndex k = 0; k + 1 < rows; ++k) add_quad(body, k * n + i, k * n + j, (k + 1) * n + j, (k + 1) * n + i);
+    body.triangles.push_back({low, j, i});
+    body.triangles.push_back({high, last + i, last + j});
+  }
+  return body;
+}
+
+/// A closed profile, its inside on the right.
+SurfaceMesh turned_loop(const Profile& profile, int sides) {
   SurfaceMesh ring;
-  const auto n = static_cast<VertexIndex>(sides);
-  for (const auto& [radius, z] :
-       {std::pair{inner, 0.0}, std::pair{inner, height}, std::pair{outer, height}, std::pair{outer, 0.0}})
-    for (int i = 0; i < sides; ++i) ring.points.push_back(on_circle(radius, 2 * kPi * i / sides, z));
+  const auto n = static_cast<VertexIndex>(sides), rows = static_cast<VertexIndex>(profile.size());
+  add_circles(ring, profile, sides, 0);
   for (VertexIndex i = 0; i < n; ++i)
-    for (VertexIndex k = 0; k < 4; ++k) {
-      const VertexIndex j = (i + 1) % n, l = (k + 1) % 4;
+    for (VertexIndex k = 0; k < rows; ++k) {
+      const VertexIndex j = (i + 1) % n, l = (k + 1) % rows;
       add_quad(ring, k * n + i, l * n + i, l * n + j, k * n + j);
     }
   return ring;
+}
+
+}  // namespace
+
+SurfaceMesh faceted_pin(int sides, double radius, double low, double high, double turn) {
+  return turned_stack({{radius, low}, {radius, high}}, sides, turn);
+}
+
+SurfaceMesh faceted_ring(int sides, double inner, double outer, double height) {
+  return turned_loop({{inner, 0}, {inner, height}, {outer, height}, {outer, 0}}, sides);
+}
+
+SurfaceMesh faceted_plug(int sides, double turn) {
+  return turned_stack({{1, 0}, {1, .7}, {1.5, 1.2}}, sides, turn);
+}
+
+SurfaceMesh faceted_countersink(int sides) {
+  return turned_loop({{1, 0}, {1, .7}, {1.5, 1.2}, {2.5, 1.2}, {2.5, 0}}, sides);
 }
 
 SurfaceMesh faceted_ball(int around, int down, double radius) {

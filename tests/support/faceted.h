@@ -12,6 +12,10 @@ SurfaceMesh faceted_pin(int sides, double radius, double low, double high, doubl
 /// A ring along z from 0, with as many sides inside as outside.
 SurfaceMesh faceted_ring(int sides, double inner, double outer, double height);
 
+/// What fills a hole of radius 1 that opens as a cone, and a plate with that hole, 1.2 high.
+SurfaceMesh faceted_plug(int sides, double turn);
+SurfaceMesh faceted_countersink(int sides);
+
 /// A ball by longitude and latitude.
 SurfaceMesh faceted_ball(int around, int down, double radius);
 

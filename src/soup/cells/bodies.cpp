@@ -166,9 +166,11 @@ class Slivers {
   };
   Given give_away() {
     const std::vector<double> volumes = labelled_.cells.volumes();
+    const std::vector<char> is_body = cells_that_are_bodies(volumes);
     std::vector<char> waits(labelled_.cells.count(), 0);
     Given given;
     for (std::uint32_t c = 1; c < waits.size(); ++c) {
+      if (is_body[c]) continue;
       double area = 0;
       for (const std::uint32_t t : walls_[c]) area += area_of(t);
       waits[c] = 2 * volumes[c] < reach_around(c) * area;
@@ -195,6 +197,17 @@ class Slivers {
  private:
   double area_of(std::uint32_t t) const {
     return triangle_area(labelled_.arranged.points, labelled_.arranged.triangles[t]);
+  }
+
+  /// Cells that are most of a body: however thin it is, it stays.
+  std::vector<char> cells_that_are_bodies(const std::vector<double>& volumes) const {
+    std::map<std::uint32_t, double> whole;
+    for (std::uint32_t c = 1; c < volumes.size(); ++c)
+      for (const auto& [b, times] : windings_[c]) whole[b] += volumes[c];
+    std::vector<char> are(volumes.size(), 0);
+    for (std::uint32_t c = 1; c < volumes.size(); ++c)
+      are[c] = std::ranges::any_of(windings_[c], [&](const auto& w) { return 2 * volumes[c] > whole[w.first]; });
+    return are;
   }
 
   std::vector<std::uint32_t> bodies_around(std::uint32_t c) const {
@@ -411,11 +424,11 @@ void dissolve_imprints(Complex& complex, const Together& all, const cells::Misfi
   complex.volumes = volumes_of_regions(complex.surface);
 }
 
-void note_changes(const cells::ClosedGaps& closed, const std::string& walls, const char* stays, double moved,
+void note_changes(const cells::ClosedGaps& closed, const std::string& walls, const std::string& stays, double moved,
                   double floor, const Arrangement& arranged, std::vector<std::string>& notes) {
   if (!walls.empty())
     notes.push_back(
-        fmt::format("walls of bodies that nearly touch are one, those of the {} body: {}; that moved "
+        fmt::format("walls of bodies that nearly touch are one, those of {}: {}; that moved "
                     "{}{:.3g} of volume; `tolerance` 0 leaves all as it is",
                     stays, walls,
                     closed.moved == 0 ? ""
@@ -452,13 +465,19 @@ struct JoinedWay {
   bool is_sound() const { return crossings == 0 && shape.has_no_wedge(); }
 };
 
+/// Walls that come together cross at the edges of their contacts: about one pair of triangles in two. Where more pairs
+/// do, in parts of the number of triangles, they have come together crumpled, and to arrange that takes minutes for
+/// nothing; those that are left as they are may cross more.
+constexpr double kEnoughCross = 1, kCrumpled = 2;
+
 struct WayTogether {
   const Misfits* near;  ///< which walls do
   Rims rims;
   std::vector<std::uint32_t> place;  ///< of each body: walls of earlier ones stay
-  const char* stays = "earlier";     ///< whose walls these are
-  bool may_cross = true;             ///< else it is given up where walls do
+  std::string stays;                 ///< whose walls these are
+  double may_cross = kEnoughCross;   ///< it is given up where more pairs do, in parts of the number of triangles
 };
+const std::string kEarlier = "the earlier body", kCoarser = "the coarser body";
 
 std::vector<std::uint32_t> as_given(const Misfits& misfits) {
   std::vector<std::uint32_t> place(misfits.bodies());
@@ -472,8 +491,8 @@ ClosedGaps closed_by(const WayTogether& way, const Together& all, const RunConte
   return close_gaps({all.points, all.triangles, place}, way.near->renumbered(way.place), way.rims, context);
 }
 
-/// Whether walls do otherwise than by sharing vertices, edges and whole triangles.
-bool cross_each_other(const ClosedGaps& closed, const RunContext& context) {
+/// Whether walls of more than so many pairs meet otherwise than by sharing vertices, edges and whole triangles.
+bool cross_each_other(const ClosedGaps& closed, double part, const RunContext& context) {
   std::set<Triangle> known;
   std::vector<Triangle> each;
   for (const Triangle& t : closed.triangles) {
@@ -481,15 +500,8 @@ bool cross_each_other(const ClosedGaps& closed, const RunContext& context) {
     std::sort(sorted.begin(), sorted.end());
     if (known.insert(sorted).second) each.push_back(t);
   }
-  return !self_intersections(closed.points, each, 1, context).empty();
-}
-
-/// Walls that come together cross at the edges of their contacts: about one pair of triangles in two. Where many more
-/// do, they have come together crumpled, and to arrange that takes minutes for nothing.
-bool are_crumpled(const ClosedGaps& closed, const RunContext& context) {
-  constexpr std::size_t kMostPairsPerTriangle = 2;
-  const std::size_t most = kMostPairsPerTriangle * closed.triangles.size();
-  return self_intersections(closed.points, closed.triangles, most + 1, context).size() > most;
+  const auto most = static_cast<std::size_t>(part * static_cast<double>(each.size()));
+  return self_intersections(closed.points, each, most + 1, context).size() > most;
 }
 
 /// Nobody overlaps in them any more.
@@ -503,8 +515,8 @@ JoinedWay joined_by(const WayTogether& way, const Joining& joining) {
   using Overlap = ComplexOptions::Overlap;
   const auto& [bodies, options, all, misfits, context] = joining;
   const ClosedGaps closed = closed_by(way, all, context);
-  if (!way.may_cross && cross_each_other(closed, context)) throw InputError("bodies do not fit: their walls cross");
-  if (closed.triangles.size() > all.triangles.size() && are_crumpled(closed, context))
+  const bool is_divided = closed.triangles.size() > all.triangles.size();
+  if ((is_divided || way.may_cross == 0) && cross_each_other(closed, way.may_cross, context))
     throw InputError("walls of bodies that nearly touch crumple where they come together");
   const Arrangement arranged = arrange(closed.points, closed.triangles, context);
   const Cells cells(arranged.points, arranged.triangles, context);
@@ -593,7 +605,7 @@ std::optional<JoinedWay> fitting_within(double within, double own, const Joining
   const MisfitLimits limits{within, size};
   const Misfits close({all.points, all.triangles, all.body}, limits, joining.context);
   try {
-    JoinedWay way = joined_by({&close, Rims::kBend, as_given(close), "earlier", false},
+    JoinedWay way = joined_by({&close, Rims::kBend, as_given(close), kEarlier, 0},
                               {joining.bodies, joining.options, all, close, joining.context});
     const Complex& complex = way.complex;
     if (way.shape.narrowest >= kAsNarrow * own && !has_new_short_edges(way, all) &&
@@ -616,29 +628,95 @@ std::optional<JoinedWay> fitting_way(const Joining& joining, double size) {
   return std::nullopt;
 }
 
-/// Walls of fine facets are best brought together whole. Coarse ones that come to them may cross in vain then: the
-/// finer ones come to these, or all are better left where they are. `size`: of elements to come.
+/// Orders of bodies in which the walls of earlier ones may stay: as they are given; the coarsest first; and if that is
+/// no great work all others, as the one that is right hangs on where facets of each lie.
+std::vector<std::pair<std::vector<std::uint32_t>, std::string>> orders_of(const Joining& joining) {
+  constexpr std::size_t kMostBodies = 3, kMostTriangles = 20'000;
+  const std::vector<std::uint32_t> given = as_given(joining.misfits), coarsest = joining.misfits.coarsest_first();
+  std::vector<std::pair<std::vector<std::uint32_t>, std::string>> orders{{given, kEarlier}};
+  if (coarsest != given) orders.emplace_back(coarsest, kCoarser);
+  if (given.size() > kMostBodies || joining.all.triangles.size() > kMostTriangles) return orders;
+  for (std::vector<std::uint32_t> place = given; std::ranges::next_permutation(place).found;) {
+    if (place == coarsest) continue;
+    std::vector<std::string> names(place.size());
+    for (std::uint32_t b = 0; b < place.size(); ++b)
+      names[place[b]] = fmt::format("\"{}\"", name_of(joining.bodies, b));
+    orders.emplace_back(place, fmt::format("{}", fmt::join(names, " before ")));
+  }
+  return orders;
+}
+
+/// Ways in which bodies may come together, the best of those that were tried, and what their volumes are if none does.
+class WaysTogether {
+ public:
+  explicit WaysTogether(const Joining& joining) : joining_(joining), apart_(joining.misfits.without_contacts()) {}
+
+  /// Walls of fine facets are best brought together whole. Coarse ones that come to them may cross in vain then:
+  /// another order is better, or all are left where they are.
+  JoinedWay best() {
+    for (const auto& [place, stays] : orders_of(joining_))
+      for (const Rims rims : {Rims::kBend, Rims::kKeep})
+        if (is_good({&joining_.misfits, rims, place, stays})) return std::move(*best_);
+    if (const JoinedWay* apart = joined_apart(); apart && is_better(*apart)) return std::move(*unmoved_);
+    if (!best_) return joined_by(way_apart(), joining_);
+    return std::move(*best_);
+  }
+
+ private:
+  bool is_good(const WayTogether& way) {
+    try {
+      JoinedWay joined = joined_by(way, joining_);
+      if (!keeps_volumes(joined) || !is_better(joined)) return false;
+      best_ = std::move(joined);
+    } catch (const InputError&) {
+      return false;
+    }
+    return best_->is_sound() && !has_new_short_edges(*best_, joining_.all);
+  }
+
+  bool is_better(const JoinedWay& way) const {
+    const auto rank = [](const JoinedWay& w) { return std::pair(w.is_sound(), w.shape.worth()); };
+    return !best_ || rank(way) > rank(*best_);
+  }
+
+  /// Whether no body has become another one, in a tangle of walls. What others take of it as they lie they do.
+  bool keeps_volumes(const JoinedWay& way) {
+    const double misfit = joining_.misfits.largest();
+    if (keep_their_volumes(way.complex, joining_.bodies, misfit)) return true;
+    const JoinedWay* apart = joined_apart();
+    if (!apart) return true;
+    const std::vector<double>&now = way.complex.volumes, &was = apart->complex.volumes;
+    if (now.size() != was.size()) return false;
+    for (std::size_t b = 0; b < std::min(now.size(), joining_.bodies.size()); ++b)
+      if (std::abs(now[b] - was[b]) > misfit * area(joining_.bodies[b].surface)) return false;
+    return true;
+  }
+
+  WayTogether way_apart() const { return {&apart_, Rims::kBend, as_given(joining_.misfits), kEarlier, kCrumpled}; }
+  /// nullptr: they cannot be.
+  const JoinedWay* joined_apart() {
+    if (!std::exchange(is_apart_known_, true)) {
+      try {
+        unmoved_ = joined_by(way_apart(), joining_);
+      } catch (const InputError&) {
+      }
+    }
+    return unmoved_ ? &*unmoved_ : nullptr;
+  }
+
+  const Joining& joining_;
+  const Misfits apart_;
+  std::optional<JoinedWay> best_, unmoved_;
+  bool is_apart_known_ = false;
+};
+
+/// `size`: of elements to come.
 JoinedWay best_way(const Joining& joining, double size) {
   const Misfits& misfits = joining.misfits;
-  const std::vector<std::uint32_t> given = as_given(misfits), coarsest = misfits.coarsest_first();
-  if (misfits.largest() <= misfits.floor()) return joined_by({&misfits, Rims::kBend, given}, joining);
+  if (misfits.largest() <= misfits.floor())
+    return joined_by({&misfits, Rims::kBend, as_given(misfits), kEarlier, kCrumpled}, joining);
   if (std::optional<JoinedWay> fitting = fitting_way(joining, size)) return std::move(*fitting);
-  const Misfits apart = misfits.without_contacts();
-  std::vector<WayTogether> ways{{&misfits, Rims::kBend, given}, {&misfits, Rims::kKeep, given}};
-  if (coarsest != given)
-    for (const Rims rims : {Rims::kBend, Rims::kKeep}) ways.push_back({&misfits, rims, coarsest, "coarser"});
-  ways.push_back({&apart, Rims::kBend, given});
-  std::optional<JoinedWay> best;
-  for (const WayTogether& way : ways) {
-    try {
-      JoinedWay joined = joined_by(way, joining);
-      if (!best || joined.shape.worth() > best->shape.worth()) best = std::move(joined);
-    } catch (const InputError&) {
-      if (&way == &ways.back() && !best) throw;
-    }
-    if (best && best->is_sound() && !has_new_short_edges(*best, joining.all)) break;
-  }
-  return std::move(*best);
+  return WaysTogether(joining).best();
 }
 
 /// Where walls did not come together well, and of which regions.

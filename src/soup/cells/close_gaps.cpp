@@ -147,14 +147,14 @@ class BodyMeeting {
 
   void run() {
     const TriangleTree earlier(points_, earlier_.triangles);
-    move_vertices(earlier);
+    move_vertices(earlier, TriangleTree(points_, later_.triangles));
     merge_equal_points();
     kept_edges_ = earlier_.edges();
     const TriangleTree later(points_, later_.triangles);
     put_vertices_on(later, earlier_, later_, inside_later_, true);
     put_vertices_on(earlier, later_, earlier_, inside_earlier_, false);
     find_settled();
-    cross_edges(earlier);
+    cross_edges(earlier, later);
     follow_edges();
     // Where the later body's walls turn, they may leave the earlier ones.
     for (const auto& [f, of] : later_.sharp) {
@@ -185,6 +185,23 @@ class BodyMeeting {
                        [&](std::uint32_t t) { return face_each_other(of.normals[t], normal, way); });
   }
 
+  /// Whether a vertex that goes so to a wall with normal n goes along it by little, beside the edges at the vertex.
+  bool is_across(VertexIndex v, Vec3 n, Vec3 way) const {
+    const double along = length(way - dot(way, n) * n);
+    return along <= std::max(misfits_.floor(), kOfEdge * lengths_.at(v));
+  }
+
+  /// Whether another wall of the later body lies between p, on it, and q: that one goes to q.
+  bool is_behind(const TriangleTree& own, Vec3 p, Vec3 q) const {
+    constexpr double kHalf = 0.5;
+    const double within = kHalf * distance(p, q);
+    if (within <= misfits_.floor()) return false;
+    return !own.for_each_box_near(grown({q, q}, within), [&](std::uint32_t u, const TriangleCorners& c) {
+      const Vec3 nearest = closest_point_on_triangle(q, c[0], c[1], c[2]);
+      return distance(nearest, q) > within || dot(later_.normals[u], p - nearest) > -within;
+    });
+  }
+
   /// Whether a vertex of the later body lies on walls that turn as those at an edge of earlier ones do.
   bool is_same_corner(VertexIndex v, const Edge& e) const {
     const auto found = earlier_.sharp.find(e);
@@ -197,18 +214,18 @@ class BodyMeeting {
     });
   }
 
-  void move_vertices(const TriangleTree& tree) {
+  void move_vertices(const TriangleTree& tree, const TriangleTree& own) {
     // The largest misfit first: where three bodies meet, corners are near each other only once they are on the same
     // wall.
     std::set<double, std::greater<>> reaches;
     for (const BodyFace& f : earlier_.faces) reaches.insert(reach(f));
     for (const double r : reaches)
-      for (const auto& [v, around] : later_.around) move_vertex(v, tree, r);
+      for (const auto& [v, around] : later_.around) move_vertex(v, tree, own, r);
   }
 
   /// Onto the nearest place of a wall that it belongs to: to a vertex rather than an edge, to an edge rather than a
   /// face, if these are near beside the edges there; from where walls turn to where they turn, before all.
-  void move_vertex(VertexIndex v, const TriangleTree& tree, double of_reach) {
+  void move_vertex(VertexIndex v, const TriangleTree& tree, const TriangleTree& own, double of_reach) {
     const Vec3 p = points_[v];
     const double floor = misfits_.floor();
     double nearest = TriangleTree::kFar;
@@ -219,6 +236,7 @@ class BodyMeeting {
       const double d = distance(p, q);
       if (d > of_reach || d >= nearest) return true;
       if (d > floor && !faces_wall(later_, v, earlier_.normals[t], p - q)) return true;
+      if (!is_across(v, earlier_.normals[t], p - q) || is_behind(own, p, q)) return true;
       nearest = d;
       at = q;
       return true;
@@ -348,20 +366,21 @@ class BodyMeeting {
   }
 
   /// Edges that pass each other on one wall get a vertex there, on the earlier one's.
-  void cross_edges(const TriangleTree& tree) {
+  void cross_edges(const TriangleTree& tree, const TriangleTree& own) {
     std::set<std::array<Edge, 2>> crossed;
     for (std::uint32_t s = 0; s < later_.triangles.size(); ++s) {
       if (s % 1024 == 0) context_.check();
       if (is_degenerate(later_.triangles[s])) continue;
       tree.for_each_box_near(grown(box_of(corners(later_.triangles[s])), kBend * most_),
                              [&](std::uint32_t t, const TriangleCorners&) {
-                               cross_edges_of(t, s, crossed);
+                               cross_edges_of(t, s, own, crossed);
                                return true;
                              });
     }
   }
 
-  void cross_edges_of(std::uint32_t t, std::uint32_t s, std::set<std::array<Edge, 2>>& crossed) {
+  void cross_edges_of(std::uint32_t t, std::uint32_t s, const TriangleTree& own,
+                      std::set<std::array<Edge, 2>>& crossed) {
     const double most = std::max(misfits_.floor(), kBend * reach(earlier_.faces[t]));
     for (int i = 0; i < 3; ++i)
       for (int j = 0; j < 3; ++j) {
@@ -376,6 +395,7 @@ class BodyMeeting {
         if (length(way) > misfits_.floor() && !is_end(f) &&
             !face_each_other(later_.normals[s], earlier_.normals[t], way))
           continue;
+        if (is_behind(own, meeting->other, meeting->at)) continue;
         if (crossed.insert({e, f}).second) cross(e, f, *meeting, most);
       }
   }

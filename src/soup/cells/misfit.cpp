@@ -69,6 +69,13 @@ struct BodyWall {
   }
 
  private:
+  /// How a wall turns at an edge: 0 where it is flat, ends, or turns sharply.
+  struct WallTurn {
+    double angle = 0;
+    bool is_convex = false;
+    Vec3 along;
+  };
+
   /// Of a chord of length w that turns by an angle at its ends: w / 2 tan(angle / 4).
   void measure_sagittas(const std::vector<Vec3>& points) {
     sagitta.assign(triangles.size(), 0);
@@ -77,27 +84,53 @@ struct BodyWall {
     for (Triangle& t : local)
       for (VertexIndex& v : t) v = static_cast<VertexIndex>(place_of(v));
     const EdgeTable table = make_edge_table(vertices.size(), local);
+    std::vector<WallTurn> turns(table.size());
+    std::vector<std::vector<std::size_t>> edges_at(vertices.size());
     for (std::size_t e = 0; e < table.size(); ++e) {
       const auto uses = table.uses(e);
       if (uses.size() == 1)
         for (const VertexIndex v : table.edges[e]) at_end[v] = 1;
       if (uses.size() != 2) continue;
-      const std::uint32_t s = uses[0] / 3, t = uses[1] / 3;
-      edges.push_back({table.edges[e][0], table.edges[e][1], s, t});
-      if (!is_curved(normals[s], normals[t])) continue;
-      const Vec3 p = points[vertices[table.edges[e][0]]], q = points[vertices[table.edges[e][1]]];
+      edges.push_back({table.edges[e][0], table.edges[e][1], uses[0] / 3, uses[1] / 3});
+      turns[e] = turn_at(points, table, e);
+      for (const VertexIndex v : table.edges[e]) edges_at[v].push_back(e);
+    }
+    for (std::size_t e = 0; e < table.size(); ++e) {
+      if (turns[e].angle == 0) continue;
       double width = 0;
-      for (const HalfEdge h : uses) {
+      for (const HalfEdge h : table.uses(e)) {
         const auto [a, b, c] = triangles[h / 3];
+        const VertexIndex beyond = local[h / 3][(h % 3 + 2) % 3];
+        if (!goes_on(turns, e, edges_at[beyond])) continue;
+        const Vec3 p = points[vertices[table.edges[e][0]]], q = points[vertices[table.edges[e][1]]];
         width = std::max(width, length(double_area_normal(points[a], points[b], points[c])) / distance(p, q));
       }
-      const double turn = elementary::atan2(length(cross(normals[s], normals[t])), dot(normals[s], normals[t]));
-      for (const std::uint32_t k : {s, t}) sagitta[k] = std::max(sagitta[k], width / 2 * elementary::tan(turn / 4));
+      for (const HalfEdge h : table.uses(e))
+        sagitta[h / 3] = std::max(sagitta[h / 3], width / 2 * elementary::tan(turns[e].angle / 4));
     }
     sagitta_at.assign(vertices.size(), 0);
     for (std::size_t v = 0; v < vertices.size(); ++v)
       for (const std::uint32_t t : around[v]) sagitta_at[v] = std::max(sagitta_at[v], sagitta[t]);
     for (const double s : sagitta) largest_sagitta = std::max(largest_sagitta, s);
+  }
+
+  WallTurn turn_at(const std::vector<Vec3>& points, const EdgeTable& table, std::size_t e) const {
+    const auto uses = table.uses(e);
+    const Vec3 n = normals[uses[0] / 3], m = normals[uses[1] / 3];
+    if (!is_curved(n, m)) return {};
+    const Vec3 p = points[vertices[table.edges[e][0]]], q = points[vertices[table.edges[e][1]]];
+    const Vec3 beyond = points[triangles[uses[1] / 3][(uses[1] % 3 + 2) % 3]];
+    return {elementary::atan2(length(cross(n, m)), dot(n, m)), dot(n, beyond - p) < 0, normalized(q - p)};
+  }
+
+  /// Whether the wall turns likewise on the other side of the facet, at one of these edges there: a single edge of a
+  /// cone with a cylinder stands for no arc.
+  static bool goes_on(const std::vector<WallTurn>& turns, std::size_t e, const std::vector<std::size_t>& beyond) {
+    constexpr double kParallel = 0.7, kLikewise = 0.25;
+    return std::ranges::any_of(beyond, [&](std::size_t f) {
+      return f != e && turns[f].angle > kLikewise * turns[e].angle && turns[f].is_convex == turns[e].is_convex &&
+             std::abs(dot(turns[f].along, turns[e].along)) > kParallel;
+    });
   }
 };
 
@@ -272,7 +305,7 @@ class Measuring {
   Met misfit_at(const BodyWall& a, const Place& place, const BodyWall& b, double most) const {
     const Vec3 p = place.at;
     double nearest = TriangleTree::kFar, sagitta = 0;
-    Vec3 at;
+    Vec3 at, normal;
     b.tree->for_each_box_near(grown({p, p}, most), [&](std::uint32_t t, const TriangleCorners& c) {
       const Vec3 q = closest_point_on_triangle(p, c[0], c[1], c[2]);
       const double d = distance(p, q);
@@ -281,13 +314,18 @@ class Measuring {
       if (std::abs(dot(b.normals[t], p - q)) < place.across * d) return true;
       nearest = d;
       at = q;
+      normal = b.normals[t];
       sagitta = b.sagitta[t];
       return true;
     });
     if (!(nearest <= most)) return {};
     const Met met{nearest, sagitta};
     const double allowed = kOfSagitta * (place.sagitta + sagitta);
-    if (limits_.tolerance || nearest <= allowed) return is_thinner(a, p, b, at, nearest) ? Met{} : met;
+    if (limits_.tolerance || nearest <= allowed)
+      return is_thinner(a, p, b, at, nearest) || has_other_side(a, p, place.normal, nearest) ||
+                     has_other_side(b, at, normal, nearest)
+                 ? Met{}
+                 : met;
     const bool small = nearest <= kOfSize * limits_.size;
     return small && !is_thinner(a, p, b, at, kThicker * nearest) ? met : Met{};
   }
@@ -295,6 +333,17 @@ class Measuring {
   /// Whether one of the bodies is there, to be moved by that.
   static bool is_thinner(const BodyWall& a, Vec3 p, const BodyWall& b, Vec3 q, double by) {
     return a.leeway->at(p, by) < by || b.leeway->at(q, by) < by;
+  }
+
+  /// Whether the body's other side is nearer to q, on a wall with normal n, than twice that: beside corners of coarse
+  /// facets nothing lies straight across.
+  bool has_other_side(const BodyWall& b, Vec3 q, Vec3 n, double by) const {
+    constexpr double kTwice = 2, kFacesAway = -0.4;
+    return !b.tree->for_each_box_near(grown({q, q}, kTwice * by), [&](std::uint32_t t, const TriangleCorners& c) {
+      if (dot(b.normals[t], n) > kFacesAway) return true;
+      const Vec3 way = closest_point_on_triangle(q, c[0], c[1], c[2]) - q;
+      return !(length(way) < kTwice * by && dot(way, n) < 0);
+    });
   }
 
   const std::vector<Vec3>& points_;

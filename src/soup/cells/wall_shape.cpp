@@ -66,8 +66,23 @@ class OpenWalls {
 
 }  // namespace
 
+namespace {
+
+double least_height(const SurfaceMesh& surface) {
+  double least = HUGE_VAL;
+  for (const auto& [a, b, c] : surface.triangles) {
+    const Vec3 p = surface.points[a], q = surface.points[b], r = surface.points[c];
+    const double longest = std::max({distance(p, q), distance(q, r), distance(r, p)});
+    least = std::min(least, length(double_area_normal(p, q, r)) / longest);
+  }
+  return least;
+}
+
+}  // namespace
+
 WallShape shape_of_walls(const SurfaceMesh& complex) {
   WallShape shape;
+  shape.thinnest = least_height(complex);
   const EdgeTable table = make_edge_table(complex.points.size(), complex.triangles);
   for (std::size_t e = 0; e < table.size(); ++e) {
     const Edge& edge = table.edges[e];

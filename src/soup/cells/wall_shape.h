@@ -4,6 +4,7 @@
 
 #include "soup/cells/misfit.h"
 
+#include <algorithm>
 #include <cmath>
 
 namespace octafront::cells {
@@ -11,12 +12,17 @@ namespace octafront::cells {
 /// The sine of 20 degrees: wider wedges are none.
 inline constexpr double kWideWedge = 0.34;
 
-/// What elements suffer from, of walls that came together: short edges and narrow wedges.
+/// What elements suffer from, of walls that came together: short edges, flat triangles and narrow wedges.
 struct WallShape {
   double shortest = HUGE_VAL;     ///< edge
+  double thinnest = HUGE_VAL;     ///< height of a triangle
   double narrowest = kWideWedge;  ///< sine of a wedge, up to that
   Edge at{};                      ///< the edge of that wedge; of none, the shortest
-  double worth() const { return shortest * narrowest; }
+  /// Triangles within walls are made anew, where edges between these stay: their heights count less.
+  double worth() const {
+    constexpr double kWithinWalls = 4;
+    return std::min(shortest, kWithinWalls * thinnest) * narrowest;
+  }
   bool has_no_wedge() const { return narrowest >= kWideWedge; }
 };
 
