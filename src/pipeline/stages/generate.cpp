@@ -138,7 +138,7 @@ Result generate_once(const Domain& domain, const Options& asked, const RunContex
   divide_bridges(filled.mesh, run);
   raise_order(input, filled, run);
   agree_on(filled, "mesh", context);
-  name_patches(input, filled);
+  if (!input.geometry) name_patches(input, filled);
   name_parts(input, filled, run);
   pair_nodes(input, filled.mesh, run);
   check_result(filled, run);

@@ -140,6 +140,7 @@ Options options_for_geometry(const Domain& domain, Options options) {
 
 void place_on_geometry(const Prepared& input, Filled& filled, Run& run) {
   if (!input.geometry) return;
+  name_patches(input, filled);  // What repair closed lies on no face.
   take_patches_of(*input.geometry, filled);
   if (keeps_surface(run.options)) return;
   run.stage("true geometry", [&](const Stage& stage) {
