@@ -18,8 +18,14 @@ namespace {
 /// Faces that look away from each other more than this (the cosine of their normals' angle) bound a thin solid, or a
 /// gap; they stay apart.
 constexpr double kLookAway = -0.5;
+/// Narrow parts of wide faces begin where lines meet; a solid that is a wedge of more than 14 degrees there may end a
+/// little earlier.
+constexpr double kBackToBack = -0.97;
 /// Faces are parallel on both sides of a step: the cosine.
 constexpr double kParallel = 0.985;
+/// Triangles of wide faces whose lines run together at less than this (the tangent, 15 degrees) are a narrow part of
+/// them.
+constexpr double kFlat = 0.27;
 /// So often is the whole done again at most; it ends long before, when nothing changes.
 constexpr int kRounds = 10;
 /// Faces that would not vanish as a whole are left out, and all is done again: so often at most, then nothing is done.
@@ -35,12 +41,21 @@ bool has(const Triangle& t, VertexIndex v) {
   return t[0] == v || t[1] == v || t[2] == v;
 }
 
+/// What goes: tiny edges and narrow faces, or parts of wide faces.
+enum class Goes { kWhole, kParts };
+
 class Collapse {
  public:
-  Collapse(CadModel& model, double tiny, std::vector<bool> is_narrow, const std::vector<bool>& is_spared)
-      : model_(model), tiny_(tiny), to_(model.points.size()), is_narrow_(std::move(is_narrow)) {
+  Collapse(CadModel& model, double tiny, Goes goes, std::vector<bool> is_narrow, const std::vector<bool>& is_spared)
+      : model_(model),
+        tiny_(tiny),
+        goes_(goes),
+        to_(model.points.size()),
+        is_narrow_(std::move(is_narrow)),
+        is_narrowed_(model.faces.size(), false) {
     std::iota(to_.begin(), to_.end(), VertexIndex{0});
     at_tiny_.assign(model.points.size(), 0);
+    on_line_.assign(model.points.size(), 0);
     for (std::size_t e = 0; e < model.edges.size(); ++e) lay_out(model.edges[e], is_spared);
     is_live_.assign(model.triangles.size(), 1);
     around_.resize(model.points.size()), origins_.resize(model.points.size()), rank_.resize(model.points.size(), 0);
@@ -60,13 +75,17 @@ class Collapse {
     for (int round = 0; round < kRounds && (collapse_edges(false) + collapse_edges(true) + turn_caps()) > 0; ++round) {
     }
     for (const CadEdge& edge : model_.edges)
-      made.edges += edge.length < tiny_ && last_of(edge.vertices.front()) == last_of(edge.vertices.back()) &&
+      made.edges += goes_ == Goes::kWhole && edge.length < tiny_ &&
+                    last_of(edge.vertices.front()) == last_of(edge.vertices.back()) &&
                     edge.vertices.front() != edge.vertices.back();
     take_triangles();
     take_edges();
     const std::vector<char> has_now = faces_with_triangles();
     for (std::uint32_t f = 0; f < had.size(); ++f)
-      if (had[f] && !has_now[f]) made.faces.push_back(f);
+      if (had[f] && !has_now[f])
+        made.faces.push_back(f);
+      else if (goes_ == Goes::kParts && is_narrowed_[f])
+        made.narrowed.push_back(f);
     return made;
   }
 
@@ -85,8 +104,12 @@ class Collapse {
 
   void lay_out(const CadEdge& edge, const std::vector<bool>& is_spared) {
     const bool stays = std::any_of(edge.faces.begin(), edge.faces.end(), [&](std::uint32_t f) { return is_spared[f]; });
-    const bool is_tiny = !stays && edge.length < tiny_ && edge.vertices.front() != edge.vertices.back();
-    for (std::size_t k = 0; is_tiny && k < edge.vertices.size(); ++k) at_tiny_[edge.vertices[k]] = 1;
+    const bool is_tiny =
+        goes_ == Goes::kWhole && !stays && edge.length < tiny_ && edge.vertices.front() != edge.vertices.back();
+    for (const VertexIndex v : edge.vertices) {
+      if (is_tiny) at_tiny_[v] = 1;
+      if (on_line_[v] != kSpared) on_line_[v] = stays ? kSpared : 1;
+    }
     for (std::size_t k = 0; k + 1 < edge.vertices.size(); ++k)
       (is_tiny ? tiny_segments_ : long_segments_).insert(segment(edge.vertices[k], edge.vertices[k + 1]));
   }
@@ -109,7 +132,8 @@ class Collapse {
       if (!is_live_[t]) continue;
       for (std::size_t k = 0; k < 3; ++k) {
         const Segment s = segment(model_.triangles[t][k], model_.triangles[t][(k + 1) % 3]);
-        const bool crosses = is_narrow_[face(t)] && !long_segments_.contains(s);
+        const bool crosses =
+            !long_segments_.contains(s) && (is_narrow_[face(t)] || crosses_wedge(model_.triangles[t], k));
         if (!crosses && !(at_tiny_[s[0]] && at_tiny_[s[1]] && tiny_segments_.contains(s))) continue;
         if (const double l = distance(model_.points[s[0]], model_.points[s[1]]); l < tiny_) found.insert({l, s});
       }
@@ -117,6 +141,15 @@ class Collapse {
     std::vector<Segment> in_order;
     for (const auto& [length, s] : found) in_order.push_back(s);
     return in_order;
+  }
+
+  /// Whether edge k of a triangle joins two lines that run together there, and it is the short one.
+  bool crosses_wedge(const Triangle& t, std::size_t k) const {
+    const VertexIndex a = t[k], b = t[(k + 1) % 3], c = t[(k + 2) % 3];
+    if (goes_ != Goes::kParts || on_line_[a] != 1 || on_line_[b] != 1) return false;
+    if (!long_segments_.contains(segment(a, c)) && !long_segments_.contains(segment(b, c))) return false;
+    const Vec3 to_a = model_.points[a] - model_.points[c], to_b = model_.points[b] - model_.points[c];
+    return length(cross(to_a, to_b)) < kFlat * dot(to_a, to_b);
   }
 
   /// Onto the larger of the faces; with `either_way` onto the other where that cannot be.
@@ -138,6 +171,7 @@ class Collapse {
       Triangle& corners = model_.triangles[t];
       if (has(corners, kept)) {
         is_live_[t] = 0;
+        is_narrowed_[face(t)] = true;
         for (const VertexIndex v : corners)
           if (v != gone) std::erase(around_[v], t);
         continue;
@@ -195,6 +229,7 @@ class Collapse {
 
   /// Are there wide faces on both sides that look away from each other?
   bool closes(VertexIndex a, VertexIndex b) const {
+    const double limit = is_in_narrow_face(a, b) ? kLookAway : kBackToBack;
     const auto only_at = [&](VertexIndex one, VertexIndex other) {
       std::vector<std::uint32_t> found;
       for (const std::uint32_t t : around_[one])
@@ -203,18 +238,39 @@ class Collapse {
     };
     const std::vector<std::uint32_t> at_a = only_at(a, b), at_b = only_at(b, a);
     return std::any_of(at_a.begin(), at_a.end(), [&](std::uint32_t t) {
-      return std::any_of(at_b.begin(), at_b.end(), [&](std::uint32_t u) {
-        return face(t) != face(u) && dot(normal_[t], normal_[u]) < kLookAway;
-      });
+      return std::any_of(at_b.begin(), at_b.end(),
+                         [&](std::uint32_t u) { return face(t) != face(u) && look_away(t, u, limit); });
     });
+  }
+
+  bool is_in_narrow_face(VertexIndex a, VertexIndex b) const {
+    return std::any_of(around_[a].begin(), around_[a].end(),
+                       [&](std::uint32_t t) { return is_narrow_[face(t)] && has(model_.triangles[t], b); });
+  }
+
+  bool is_loose(std::uint32_t t) const { return model_.faces[face(t)].sides == Sides{kNone, kNone}; }
+
+  /// From each other, as seen from a solid, or the outside, that both bound.
+  bool look_away(std::uint32_t t, std::uint32_t u, double limit) const {
+    if (is_loose(t) || is_loose(u)) return false;
+    const double turned = side_of_solid(t) * side_of_solid(u) * dot(normal_[t], normal_[u]);
+    const Sides &of_t = model_.faces[face(t)].sides, &of_u = model_.faces[face(u)].sides;
+    for (std::size_t i = 0; i < 2; ++i)
+      for (std::size_t k = 0; k < 2; ++k)
+        if (of_t[i] == of_u[k] && (i == k ? turned : -turned) < limit) return true;
+    return false;
   }
 
   /// Narrow triangles with a corner on the edge opposite to it: the triangle beyond takes the corner.
   std::size_t turn_caps() {
     std::size_t done = 0;
     for (std::uint32_t t = 0; t < model_.triangles.size(); ++t)
-      if (is_live_[t] && is_narrow_[face(t)]) done += turn_cap(t);
+      if (is_live_[t] && (is_narrow_[face(t)] || is_between_lines(model_.triangles[t]))) done += turn_cap(t);
     return done;
+  }
+
+  bool is_between_lines(const Triangle& t) const {
+    return goes_ == Goes::kParts && std::all_of(t.begin(), t.end(), [&](VertexIndex v) { return on_line_[v] == 1; });
   }
 
   bool turn_cap(std::uint32_t t) {
@@ -225,56 +281,89 @@ class Collapse {
     const VertexIndex a = c[k], b = c[(k + 1) % 3], apex = c[(k + 2) % 3];
     const Vec3 along = model_.points[b] - model_.points[a], to_apex = model_.points[apex] - model_.points[a];
     const double l = dot(along, along), part = l > 0 ? dot(to_apex, along) / l : 0;
-    if (!(part > 0 && part < 1) || !(length(to_apex - part * along) < tiny_)) return false;
-    const std::uint32_t u = beyond(t, a, b);
-    return u != kNone && !looks_away(apex, u) && split(t, u, {a, b, apex}, part);
+    const double height = length(to_apex - part * along);
+    if (!(part > 0 && part < 1) || !(height < tiny_)) return false;
+    if (!is_narrow_[face(t)]) {
+      if (!long_segments_.contains(segment(a, b))) return false;
+      if (!(height < kFlat * std::min(part, 1 - part) * std::sqrt(l))) return false;
+    }
+    const double limit = is_narrow_[face(t)] ? kLookAway : kBackToBack;
+    const std::vector<std::uint32_t> others = beyond(t, a, b);
+    const auto is_fit = [&](std::uint32_t u) { return !looks_away(apex, u, limit) && can_split(u, {a, b, apex}); };
+    if (others.empty() || !std::all_of(others.begin(), others.end(), is_fit)) return false;
+    take_cap(t, others, {a, b, apex}, part);
+    return true;
   }
 
   /// Is there a wide face at a vertex that looks away from a triangle?
-  bool looks_away(VertexIndex v, std::uint32_t u) const {
-    return std::any_of(around_[v].begin(), around_[v].end(), [&](std::uint32_t t) {
-      return !is_narrow_[face(t)] && dot(normal_[t], normal_[u]) < kLookAway;
-    });
+  bool looks_away(VertexIndex v, std::uint32_t u, double limit) const {
+    return std::any_of(around_[v].begin(), around_[v].end(),
+                       [&](std::uint32_t t) { return !is_narrow_[face(t)] && look_away(t, u, limit); });
   }
 
   double edge_length(const Triangle& t, std::size_t k) const {
     return distance(model_.points[t[k]], model_.points[t[(k + 1) % 3]]);
   }
 
-  /// The other triangle at an edge; kNone unless there is just one, of another face.
-  std::uint32_t beyond(std::uint32_t t, VertexIndex a, VertexIndex b) const {
-    std::uint32_t found = kNone;
+  /// The other triangles at an edge; none if one is of the same face.
+  std::vector<std::uint32_t> beyond(std::uint32_t t, VertexIndex a, VertexIndex b) const {
+    std::vector<std::uint32_t> found;
     for (const std::uint32_t u : around_[a]) {
       if (u == t || !has(model_.triangles[u], b)) continue;
-      if (found != kNone) return kNone;
-      found = u;
+      if (face(u) == face(t)) return {};
+      found.push_back(u);
     }
-    return found != kNone && face(found) != face(t) ? found : kNone;
+    return found;
   }
 
-  /// Triangle u takes the apex of t into its edge from cap[0] to cap[1], and t goes.
-  bool split(std::uint32_t t, std::uint32_t u, const Triangle& cap, double part) {
+  /// Whether triangle u may take the apex of a cap into its edge from cap[0] to cap[1].
+  bool can_split(std::uint32_t u, const Triangle& cap) const {
     const auto [a, b, apex] = cap;
-    const Triangle old = model_.triangles[u];
+    const Triangle& old = model_.triangles[u];
     if (has(old, apex)) return false;
     Triangle at_a = old, at_b = old;
     std::replace(at_a.begin(), at_a.end(), b, apex), std::replace(at_b.begin(), at_b.end(), a, apex);
-    for (const Triangle& made : {at_a, at_b})
-      if (!is_narrow_[face(u)] && !(dot(unit_normal_of(old), unit_normal_of(made)) > 0)) return false;
+    return is_narrow_[face(u)] ||
+           (dot(unit_normal_of(old), unit_normal_of(at_a)) > 0 && dot(unit_normal_of(old), unit_normal_of(at_b)) > 0);
+  }
+
+  /// The triangles beyond the cap t take its apex, and t goes.
+  void take_cap(std::uint32_t t, const std::vector<std::uint32_t>& others, const Triangle& cap, double part) {
+    for (const VertexIndex v : cap) std::erase(around_[v], t);
+    const bool is_part = !is_narrow_[face(t)];
+    is_narrowed_[face(t)] = true;
+    std::uint32_t free = t;
+    for (const std::uint32_t u : others) {
+      split(u, free, cap, part);
+      free = static_cast<std::uint32_t>(model_.triangles.size());
+    }
+    splits_.push_back({segment(cap[0], cap[1]), cap[2]});
+    long_segments_.erase(segment(cap[0], cap[1]));
+    for (const VertexIndex v : {cap[0], cap[1]})
+      if (is_part) long_segments_.insert(segment(v, cap[2]));
+  }
+
+  /// The half of triangle u at cap[1] becomes triangle `made`, which may be a new one.
+  void split(std::uint32_t u, std::uint32_t made, const Triangle& cap, double part) {
+    const auto [a, b, apex] = cap;
+    const Triangle old = model_.triangles[u];
+    Triangle at_a = old, at_b = old;
+    std::replace(at_a.begin(), at_a.end(), b, apex), std::replace(at_b.begin(), at_b.end(), a, apex);
     const std::size_t i = std::find(old.begin(), old.end(), a) - old.begin(),
                       j = std::find(old.begin(), old.end(), b) - old.begin();
     std::array<Uv, 3> uv_a = model_.corners[u], uv_b = uv_a;
     const Uv middle{uv_a[i].u + part * (uv_a[j].u - uv_a[i].u), uv_a[i].v + part * (uv_a[j].v - uv_a[i].v)};
     uv_a[j] = uv_b[i] = middle;
-    for (const VertexIndex v : cap) std::erase(around_[v], t);
+    if (made == model_.triangles.size()) {
+      model_.triangles.emplace_back(), model_.corners.emplace_back(), model_.face_of.emplace_back();
+      normal_.emplace_back(), is_live_.push_back(1);
+    }
     model_.triangles[u] = at_a, model_.corners[u] = uv_a;
-    model_.triangles[t] = at_b, model_.corners[t] = uv_b, model_.face_of[t] = face(u), normal_[t] = normal_[u];
+    model_.triangles[made] = at_b, model_.corners[made] = uv_b, model_.face_of[made] = face(u);
+    normal_[made] = normal_[u];
     std::erase(around_[b], u);
     around_[apex].push_back(u);
-    for (const VertexIndex v : at_b) around_[v].push_back(t);
-    splits_.push_back({segment(a, b), apex});
-    long_segments_.erase(segment(a, b));
-    return true;
+    for (const VertexIndex v : at_b) around_[v].push_back(made);
   }
 
   void take_triangles() {
@@ -292,7 +381,8 @@ class Collapse {
   bool is_touched(const CadEdge& edge) const {
     return std::any_of(edge.vertices.begin(), edge.vertices.end(),
                        [&](VertexIndex v) { return to_[v] != v || !origins_[v].empty(); }) ||
-           std::any_of(edge.faces.begin(), edge.faces.end(), [&](std::uint32_t f) { return bool(is_narrow_[f]); });
+           std::any_of(edge.faces.begin(), edge.faces.end(),
+                       [&](std::uint32_t f) { return is_narrow_[f] || is_narrowed_[f]; });
   }
 
   /// An edge with its vertices as they are called now, and those that were put into it.
@@ -385,10 +475,14 @@ class Collapse {
 
   CadModel& model_;
   double tiny_;
-  std::vector<VertexIndex> to_;  ///< where a vertex went; itself: it stayed
-  std::vector<bool> is_narrow_;  ///< per face
-  std::vector<char> is_live_;    ///< per triangle
-  std::vector<char> at_tiny_;    ///< per vertex: of a tiny edge
+  Goes goes_;
+  std::vector<VertexIndex> to_;    ///< where a vertex went; itself: it stayed
+  std::vector<bool> is_narrow_;    ///< per face
+  std::vector<bool> is_narrowed_;  ///< per face: lost triangles
+  std::vector<char> is_live_;      ///< per triangle
+  std::vector<char> at_tiny_;      ///< per vertex: of a tiny edge
+  static constexpr char kSpared = 2;
+  std::vector<char> on_line_;  ///< per vertex: 1: of edges; kSpared: of some that stay
   std::vector<std::vector<std::uint32_t>> around_;
   std::vector<std::vector<Vec3>> origins_;  ///< per vertex: where those came from that went to it
   std::vector<double> rank_;                ///< per vertex: the area of the largest wide face at it
@@ -403,17 +497,35 @@ class Collapse {
 Collapsed collapse_tiny(CadModel& model, double tiny, std::span<const std::uint32_t> spared) {
   std::vector<bool> is_narrow, is_spared(model.faces.size(), false);
   for (const double w : mean_widths(model)) is_narrow.push_back(w < tiny);
-  for (const std::uint32_t f : spared) is_narrow[f] = false, is_spared[f] = true;
   const auto is_tiny = [&](const CadEdge& edge) { return edge.length < tiny; };
+  for (const std::uint32_t f : spared) is_narrow[f] = false, is_spared[f] = true;
   if (std::find(is_narrow.begin(), is_narrow.end(), true) == is_narrow.end() &&
       std::none_of(model.edges.begin(), model.edges.end(), is_tiny))
     return {};
   for (int run = 0; run < kRuns; ++run) {
     CadModel made = model;
-    const Collapsed collapsed = Collapse(made, tiny, is_narrow, is_spared).run();
+    const Collapsed collapsed = Collapse(made, tiny, Goes::kWhole, is_narrow, is_spared).run();
     bool is_done = true;
     for (const std::uint32_t f : made.face_of)
       if (is_narrow[f]) is_narrow[f] = is_done = false;
+    if (!is_done) continue;
+    model = std::move(made);
+    return collapsed;
+  }
+  return {};
+}
+
+Collapsed end_narrow_parts(CadModel& model, double tiny, std::span<const std::uint32_t> spared) {
+  std::vector<bool> is_spared(model.faces.size(), false);
+  for (const std::uint32_t f : spared) is_spared[f] = true;
+  const std::vector<double> widths = mean_widths(model);
+  const std::vector<bool> none_narrow(model.faces.size(), false);
+  for (int run = 0; run < kRuns; ++run) {
+    CadModel made = model;
+    Collapsed collapsed = Collapse(made, tiny, Goes::kParts, none_narrow, is_spared).run();
+    bool is_done = true;
+    for (const std::uint32_t f : collapsed.faces)
+      if (widths[f] >= tiny) is_spared[f] = true, is_done = false;
     if (!is_done) continue;
     model = std::move(made);
     return collapsed;

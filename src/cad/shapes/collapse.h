@@ -10,8 +10,9 @@ namespace octafront::cad {
 
 /// What became of tiny faces and edges.
 struct Collapsed {
-  std::vector<std::uint32_t> faces;  ///< that have no triangles any more, ascending
-  std::size_t edges = 0;             ///< the rest: edges that are a point now
+  std::vector<std::uint32_t> faces;     ///< that have no triangles any more, ascending
+  std::vector<std::uint32_t> narrowed;  ///< that lost parts, ascending
+  std::size_t edges = 0;                ///< the rest: edges that are a point now
 };
 
 /// Takes faces whose mean width is below `tiny`, and edges shorter than it, out of the triangles: their narrow side
@@ -22,5 +23,11 @@ struct Collapsed {
 /// meet in it now; it is smooth where these were parallel before. `spared` faces and their edges stay. Whether the
 /// surface crosses itself afterwards is for the caller to see.
 Collapsed collapse_tiny(CadModel& model, double tiny, std::span<const std::uint32_t> spared = {});
+
+/// Lets faces end where they grow narrower than `tiny`: between lines that part at less than 15 degrees, as those of
+/// wedges, cusps and slits do. The lines become one there, by the same edits and under the same conditions; but a solid
+/// that is a wedge of more than 14 degrees itself may end a little earlier. Faces of which
+/// nothing would be left stay as they are, but for narrow ones.
+Collapsed end_narrow_parts(CadModel& model, double tiny, std::span<const std::uint32_t> spared = {});
 
 }  // namespace octafront::cad

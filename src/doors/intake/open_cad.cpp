@@ -17,6 +17,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <iterator>
 #include <utility>
 
 #include <fmt/format.h>
@@ -36,6 +37,9 @@ constexpr double kAngle = 0.25;
 /// Neither finer nor coarser triangles are safer from crossing each other, where faces meet at flat angles: these are
 /// tried, as multiples of deflection and angle, until there are clean ones.
 constexpr std::array<std::array<double, 2>, 5> kLadder{{{1, 1}, {0.5, 1}, {2, 2}, {0.25, 0.5}, {4, 2}}};
+/// Faces end where they grow tiny; where the solid would not be clean then, or its volume off, where they are tinier,
+/// by these parts.
+constexpr std::array kTinyTried{1.0, 0.5, 0.25};
 /// Triangles whose volume is off by more are tried finer.
 constexpr double kVolumeOff = 0.003;
 /// Chords of elements may lie so deep, in parts of the volume of a solid over its area: what they cut off then is well
@@ -235,14 +239,35 @@ class CadIn {
   Triangulated attempt(const std::array<double, 2>& by) {
     CadModel model = reader_.triangulate({deflection_ * by[0], kAngle * by[1]});
     if (options_.cad.keep_edges || model.solids.empty()) return judged(std::move(model));
+    const std::vector<std::uint32_t> spared = faces_named(model, options_.cad.apart);
+    return with_parts_ended(without_tiny(std::move(model), spared), spared);
+  }
+
+  Triangulated without_tiny(CadModel model, const std::vector<std::uint32_t>& spared) const {
     CadModel simpler = model;
-    const Collapsed collapsed = collapse_tiny(simpler, kTinyOfSize * size_, faces_named(simpler, options_.cad.apart));
+    const Collapsed collapsed = collapse_tiny(simpler, kTinyOfSize * size_, spared);
     if (collapsed.edges + collapsed.faces.size() == 0) return judged(std::move(model));
     Triangulated without = judged(std::move(simpler));
     without.collapsed = collapsed;
     if (without.is_good()) return without;
     Triangulated with = judged(std::move(model));
     return without.is_better_than(with) ? without : with;
+  }
+
+  /// Of several solids, whose lines the surface front cannot merge.
+  Triangulated with_parts_ended(Triangulated made, const std::vector<std::uint32_t>& spared) const {
+    if (made.model.solids.size() < 2) return made;
+    for (const double part : kTinyTried) {
+      CadModel simpler = made.model;
+      const Collapsed ended = end_narrow_parts(simpler, part * kTinyOfSize * size_, spared);
+      if (ended.faces.empty() && ended.narrowed.empty()) break;
+      Triangulated without = judged(std::move(simpler));
+      without.collapsed = made.collapsed;
+      std::ranges::copy(ended.faces, std::back_inserter(without.collapsed.faces));
+      without.collapsed.narrowed = ended.narrowed;
+      if (without.is_good() || (!made.is_good() && without.is_better_than(made))) return without;
+    }
+    return made;
   }
 
   Triangulated judged(CadModel model) const {
@@ -279,13 +304,18 @@ class CadIn {
            fmt::format("{} faces are meshed as {}, where narrow ones go on smoothly; each keeps its name. `keep_edges` "
                        "keeps every line",
                        made.model.faces.size(), counted(made.groups.names.size(), "patch", "patches")));
-    const auto& [faces, edges] = made.collapsed;
+    const auto& [faces, narrowed, edges] = made.collapsed;
     if (edges + faces.size() > 0)
       note(domain_, options_, "CAD",
            fmt::format(
                "{} and {} that are tiny against elements of {:.4g} have none of their own{}; `keep_edges` keeps "
                "them",
                counted(faces.size(), "face"), counted(edges, "edge"), in_unit(size_), listed(made.model, faces)));
+    if (!narrowed.empty())
+      note(domain_, options_, "CAD",
+           fmt::format("{} that grow narrow against elements of {:.4g}, as wedges and cusps do, end there{}; "
+                       "`keep_edges` keeps them",
+                       counted(narrowed.size(), "face"), in_unit(size_), listed(made.model, narrowed)));
     const TinyThings tiny = tiny_things(made.model, size_);
     if (tiny.edges + tiny.faces + tiny.narrow_faces > 0)
       note(domain_, options_, "CAD",

@@ -3,6 +3,8 @@
 #include "cad/shapes/groups.h"
 
 #include <algorithm>
+#include <cmath>
+#include <numbers>
 
 #include <gtest/gtest.h>
 
@@ -82,6 +84,87 @@ TEST(CollapseTiny, DoesNotCloseAThinPlate) {
   for (Triangle& t : m.triangles) std::swap(t[1], t[2]);
   EXPECT_TRUE(collapse_tiny(m, .05).faces.empty());
   EXPECT_EQ(std::count(m.face_of.begin(), m.face_of.end(), 1u), 3);
+}
+
+/// Between two squares a wedge, face 1, that begins in (0, 1) at 3 degrees and is .01, .06 and .2 wide at samples of
+/// the upper line; the lower line may lack the first.
+CadModel wedge_between_squares(bool has_both_samples) {
+  CadModel m;
+  m.points = {{0, 0, 0},   {1, 0, 0},     {1, 1, 0},     {.5, 1, 0}, {.2, 1, 0}, {0, 1, 0},
+              {1, 1.2, 0}, {.5, 1.06, 0}, {.2, 1.01, 0}, {1, 2, 0},  {0, 2, 0}};
+  if (has_both_samples) {
+    m.triangles = {{0, 1, 2}, {0, 2, 3}, {0, 3, 4}, {0, 4, 5}, {5, 4, 8}, {4, 3, 7}, {4, 7, 8}, {3, 2, 6}, {3, 6, 7}};
+    m.face_of = {0, 0, 0, 0, 1, 1, 1, 1, 1};
+  } else {
+    m.triangles = {{0, 1, 2}, {0, 2, 3}, {0, 3, 5}, {5, 3, 8}, {3, 7, 8}, {3, 2, 6}, {3, 6, 7}};
+    m.face_of = {0, 0, 0, 1, 1, 1, 1};
+  }
+  for (const Triangle& t : {Triangle{5, 8, 10}, Triangle{8, 7, 10}, Triangle{7, 6, 10}, Triangle{6, 9, 10}})
+    m.triangles.push_back(t), m.face_of.push_back(2);
+  m.corners.resize(m.triangles.size());
+  m.faces.resize(3);
+  for (Face& face : m.faces) face.sides = {kNone, 0}, face.area = 1;
+  m.faces[1].area = .1;
+  m.solids.resize(1);
+  const auto edge = [&](std::vector<VertexIndex> vertices, std::vector<std::uint32_t> faces) {
+    CadEdge& made = m.edges.emplace_back();
+    for (std::size_t k = 0; k < vertices.size(); ++k) made.parameters.push_back(static_cast<double>(k));
+    made.vertices = std::move(vertices), made.faces = std::move(faces), made.length = 1;
+  };
+  edge(has_both_samples ? std::vector<VertexIndex>{5, 4, 3, 2} : std::vector<VertexIndex>{5, 3, 2}, {0, 1});
+  edge({5, 8, 7, 6}, {1, 2});
+  edge({0, 1}, {0}), edge({1, 2}, {0}), edge({2, 6}, {1}), edge({6, 9}, {2}), edge({9, 10}, {2});
+  edge({10, 5}, {2}), edge({5, 0}, {0});
+  return m;
+}
+
+double least_angle(const CadModel& m, std::uint32_t face) {
+  double least = 180;
+  for (std::size_t t = 0; t < m.triangles.size(); ++t)
+    for (std::size_t k = 0; m.face_of[t] == face && k < 3; ++k) {
+      const Vec3 a = m.points[m.triangles[t][k]];
+      const Vec3 u = m.points[m.triangles[t][(k + 1) % 3]] - a, v = m.points[m.triangles[t][(k + 2) % 3]] - a;
+      least = std::min(least, std::atan2(length(cross(u, v)), dot(u, v)) * 180 / std::numbers::pi);
+    }
+  return least;
+}
+
+class EndNarrowParts : public testing::TestWithParam<bool> {};
+INSTANTIATE_TEST_SUITE_P(Samples, EndNarrowParts, testing::Bool());
+
+TEST_P(EndNarrowParts, EndsAWedgeWhereItIsTooNarrow) {
+  CadModel m = wedge_between_squares(GetParam());
+  ASSERT_LT(least_angle(m, 1), 3.1);
+  const Collapsed made = end_narrow_parts(m, .05);
+  EXPECT_EQ(made.narrowed, std::vector<std::uint32_t>{1});
+  EXPECT_TRUE(made.faces.empty());
+  EXPECT_GT(least_angle(m, 1), 6);
+}
+
+TEST_P(EndNarrowParts, LeavesALineBetweenTheFacesBeyondTheWedge) {
+  const auto joins_them = [](const CadEdge& e) {
+    return std::ranges::count(e.faces, 0u) + std::ranges::count(e.faces, 2u) == 2;
+  };
+  CadModel m = wedge_between_squares(GetParam());
+  EXPECT_TRUE(std::ranges::none_of(m.edges, joins_them));
+  end_narrow_parts(m, .05);
+  EXPECT_TRUE(std::ranges::any_of(m.edges, joins_them));
+}
+
+TEST_P(EndNarrowParts, LeavesWhatIsWiderAndWhatIsSpared) {
+  CadModel m = wedge_between_squares(GetParam());
+  EXPECT_TRUE(end_narrow_parts(m, .005).narrowed.empty());
+  const std::vector<std::uint32_t> spared{1};
+  EXPECT_TRUE(end_narrow_parts(m, .05, spared).narrowed.empty());
+  EXPECT_EQ(m.triangles, wedge_between_squares(GetParam()).triangles);
+}
+
+// What is behind face 2 then looks down on face 0, as the two sides of a plate do.
+TEST_P(EndNarrowParts, KeepsAPlateThatBeginsAsAWedge) {
+  CadModel m = wedge_between_squares(GetParam());
+  m.points[9] = {1, .2, .2}, m.points[10] = {0, 0, .2};
+  for (VertexIndex v = 6; v < 9; ++v) m.points[v].z = m.points[v].y - 1, m.points[v].y = 1;
+  EXPECT_TRUE(end_narrow_parts(m, .05).narrowed.empty());
 }
 
 }  // namespace
