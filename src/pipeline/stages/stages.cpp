@@ -257,8 +257,15 @@ void require_bounds(const Domain& mended) {
                                   wrong - mended.bound.begin(), *wrong));
 }
 
-bool is_known_clean(const Domain& domain) {
-  return domain.found_clean != 0 && domain.found_clean == fingerprint(domain.surface);
+/// What is known of a surface beforehand.
+struct Known {
+  bool is_clean = false;
+  bool has_true_folds = false;  ///< they are the body's own, not noise
+};
+
+Known known_of(const Domain& domain) {
+  return {.is_clean = domain.found_clean != 0 && domain.found_clean == fingerprint(domain.surface),
+          .has_true_folds = domain.geometry != nullptr && !domain.true_volumes.empty()};
 }
 
 /// Of arrays: readers have done so already.
@@ -281,11 +288,11 @@ std::vector<double> bounds_by_source(const Domain& mended, SurfaceMesh& surface)
   return bound;
 }
 
-/// `mended`: null, or what the soup is of, without sources. `is_clean`: it is known to be.
-Prepared prepare(const SurfaceMesh& soup, const Domain* mended, bool is_clean, Run& run) {
+/// `mended`: null, or what the soup is of, without sources.
+Prepared prepare(const SurfaceMesh& soup, const Domain* mended, Known known, Run& run) {
   SurfaceDomain::Defects defects{};
   Examined found = run.stage("repair", [&](const Stage& stage) {
-    Examined examined = examine_surface(soup, is_clean, stage.context());
+    Examined examined = examine_surface(soup, known.is_clean, stage.context());
     const RepairedSurface& repaired = examined.repaired;
     for (const std::string& note : repaired.notes) stage.note(note);
     refuse_complex_for_method(repaired.surface, run.options.method);
@@ -307,7 +314,7 @@ Prepared prepare(const SurfaceMesh& soup, const Domain* mended, bool is_clean, R
   const bool is_plain = found.repaired.surface.sides.empty();
   std::vector<double> moved;
   // Folds at faces of a periodic cell would come off one of them alone.
-  const bool may_unfold = is_plain && run.options.periodic.empty();
+  const bool may_unfold = is_plain && !known.has_true_folds && run.options.periodic.empty();
   if (defects == SurfaceDomain::Defects::kClean && may_unfold) moved = smooth_detail(found, run);
   const bool unfolded = !moved.empty();
   SurfaceMesh& surface = found.repaired.surface;
@@ -341,10 +348,10 @@ Prepared prepare_aperiodic(const Domain& domain, Run& run) {
   const SurfaceOptions& asked = run.options.surface;
   const bool heeds_bounds = asked.volume_tolerance || (has_automatic_sizes(run.options) && !asked.max_deviation);
   if (domain.bound.empty() || !heeds_bounds)
-    return on_geometry(domain, prepare(domain.surface, nullptr, is_known_clean(domain), run));
+    return on_geometry(domain, prepare(domain.surface, nullptr, known_of(domain), run));
   SurfaceMesh numbered = domain.surface;
   numbered.source.clear();
-  return on_geometry(domain, prepare(numbered, &domain, false, run));
+  return on_geometry(domain, prepare(numbered, &domain, {}, run));
 }
 
 }  // namespace
