@@ -252,7 +252,8 @@ class Collapse {
 
   /// From each other, as seen from a solid, or the outside, that both bound.
   bool look_away(std::uint32_t t, std::uint32_t u, double limit) const {
-    if (is_loose(t) || is_loose(u)) return false;
+    // Without solids nobody knows which side is out; beside solids what is loose is left out.
+    if (is_loose(t) || is_loose(u)) return model_.solids.empty() && std::abs(dot(normal_[t], normal_[u])) > -limit;
     const double turned = side_of_solid(t) * side_of_solid(u) * dot(normal_[t], normal_[u]);
     const Sides &of_t = model_.faces[face(t)].sides, &of_u = model_.faces[face(u)].sides;
     for (std::size_t i = 0; i < 2; ++i)

@@ -238,7 +238,7 @@ class CadIn {
  private:
   Triangulated attempt(const std::array<double, 2>& by) {
     CadModel model = reader_.triangulate({deflection_ * by[0], kAngle * by[1]});
-    if (options_.cad.keep_edges || model.solids.empty()) return judged(std::move(model));
+    if (options_.cad.keep_edges) return judged(std::move(model));
     const std::vector<std::uint32_t> spared = faces_named(model, options_.cad.apart);
     return with_parts_ended(without_tiny(std::move(model), spared), spared);
   }

@@ -86,6 +86,24 @@ TEST(CollapseTiny, DoesNotCloseAThinPlate) {
   EXPECT_EQ(std::count(m.face_of.begin(), m.face_of.end(), 1u), 3);
 }
 
+/// Faces that belong to no solid: nobody knows which side of them is out.
+CadModel loose(CadModel m) {
+  m.solids.clear();
+  for (Face& face : m.faces) face.sides = {kNone, kNone};
+  return m;
+}
+
+TEST(CollapseTiny, TakesAStepOutOfLooseFacesWhereTheyTurn) {
+  CadModel m = loose(step());
+  for (const VertexIndex v : {5u, 6u}) m.points[v].x = 1, m.points[v].z = 1;
+  EXPECT_EQ(collapse_tiny(m, .05).faces, std::vector<std::uint32_t>{1});
+}
+
+TEST(CollapseTiny, LeavesAStepOfLooseFacesThatMayBeAPlate) {
+  CadModel m = loose(step());
+  EXPECT_TRUE(collapse_tiny(m, .05).faces.empty());
+}
+
 /// Between two squares a wedge, face 1, that begins in (0, 1) at 3 degrees and is .01, .06 and .2 wide at samples of
 /// the upper line; the lower line may lack the first.
 CadModel wedge_between_squares(bool has_both_samples) {

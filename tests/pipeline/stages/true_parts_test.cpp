@@ -3,6 +3,7 @@
 #include <octafront/domain.h>
 #include <octafront/generate.h>
 #include <octafront/io.h>
+#include <octafront/mend.h>
 
 #include "base/geometry/true_geometry.h"
 #include "support/named_surfaces.h"
@@ -73,6 +74,71 @@ TEST(TrueParts, WhereAllHaveFacesNothingIsSaid) {
   const Result made = cube_of(0.3, 0.7);
   EXPECT_TRUE(has_group(made, "strip"));
   EXPECT_TRUE(notes_on(made, "strip").empty());
+}
+
+/// The unit cube without its top: patches 0 and 1 are the faces at x = 0 and x = 1, 2 and 3 those of y, 4 the bottom.
+class OpenBox final : public TrueGeometry {
+ public:
+  std::optional<Vec3> on_face(std::uint32_t patch, Vec3 p) const override { return onto(patch, p); }
+  std::optional<Vec3> on_edge(std::span<const std::uint32_t> patches, Vec3 p) const override {
+    std::vector<std::uint32_t> known;
+    for (const std::uint32_t patch : patches)
+      if (patch < 5 && (known.empty() || known[0] / 2 != patch / 2)) known.push_back(patch);
+    if (known.size() < 2) return std::nullopt;
+    return onto(known[0], onto(known[1], p));
+  }
+  bool is_vertex(Vec3 p) const override {
+    return (p.x == 0 || p.x == 1) && (p.y == 0 || p.y == 1) && (p.z == 0 || p.z == 1);
+  }
+  const std::vector<std::string>& patch_names() const override { return names_; }
+  std::uint32_t part_at(std::uint32_t patch, Vec3) const override { return patch; }
+  const std::vector<std::string>& part_names() const override { return names_; }
+  std::uint32_t patch_of_part(std::uint32_t part) const override { return part; }
+  const std::vector<PartGroup>& groups() const override { return groups_; }
+
+ private:
+  static Vec3 onto(std::uint32_t patch, Vec3 p) {
+    (patch < 2 ? p.x : patch < 4 ? p.y : p.z) = patch < 4 ? patch % 2 : 0;
+    return p;
+  }
+  std::vector<std::string> names_{"x0", "x1", "y0", "y1", "bottom"};
+  std::vector<PartGroup> groups_;
+};
+
+Domain closed_box() {
+  Domain domain{testing::cube(1)};
+  SurfaceMesh& box = domain.surface;
+  box.patch_names = {"x0", "x1", "y0", "y1", "bottom", kClosedByRepair};
+  box.patch.clear();
+  for (const auto& [a, b, c] : box.triangles) {
+    const Vec3 m = (box.points[a] + box.points[b] + box.points[c]) / 3;
+    box.patch.push_back(m.x == 0 ? 0 : m.x == 1 ? 1 : m.y == 0 ? 2 : m.y == 1 ? 3 : m.z == 0 ? 4 : 5);
+  }
+  domain.geometry = std::make_shared<const OpenBox>();
+  return domain;
+}
+
+TEST(TrueGeometryOfRepaired, WhatRepairClosedIsDrawnToNoFace) {
+  Options options;
+  options.size.size = 0.2;
+  const Result made = generate(closed_box(), options);
+  EXPECT_GT(made.report.quality.dihedral_min, 20);
+  EXPECT_NEAR(made.report.volume, 1, 1e-9);
+  EXPECT_TRUE(has_group(made, kClosedByRepair));
+}
+
+bool was_unfolded(const Domain& domain) {
+  Options options;
+  options.size.size = 0.5;
+  const Result made = generate(domain, options);
+  return std::ranges::any_of(made.report.stages, [](const StageReport& stage) { return stage.name == "detail"; });
+}
+
+TEST(TrueGeometryOfSolids, KeepsTheirFolds) {
+  Domain domain = closed_box();
+  EXPECT_TRUE(was_unfolded(domain));
+  domain.true_volumes = {1};
+  EXPECT_FALSE(was_unfolded(domain));
 }
 
 }  // namespace
