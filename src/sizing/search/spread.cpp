@@ -6,7 +6,6 @@
 
 #include <algorithm>
 #include <array>
-#include <span>
 
 namespace octafront {
 
@@ -15,7 +14,6 @@ namespace {
 /// What is chosen from: above, elements in between lose more than their number saves. Of second order they lose less:
 /// stress at notches of a plate, a shaft and a cavity comes as near with two thirds of the unknowns.
 constexpr std::array kGradations{kDefaultGradation, 0.15, 0.2, 0.25, 0.3, kSteepestGradation, 0.6, kSteepestCurved};
-constexpr std::size_t kOfFirstOrder = 6;
 /// Sizes that rise so fast are everywhere about what is asked for there.
 constexpr double kAtOnce = 4;
 /// The part of elements that may lie where sizes only rise.
@@ -40,7 +38,7 @@ OctreeField rising_by(const OctreeField& grid, double gradation) {
 }  // namespace
 
 double gradation_by_spread(const SurfaceMesh& surface, const WantedSizes& wanted, const SizeOptions& options,
-                           bool curved, const RunContext& context) {
+                           double steepest, const RunContext& context) {
   if (wanted.even) return kDefaultGradation;
   SizeOptions plain = options;
   plain.gradation = kDefaultGradation;
@@ -51,10 +49,8 @@ double gradation_by_spread(const SurfaceMesh& surface, const WantedSizes& wanted
   const TetPrediction expected(surface);
   const auto expected_here = expected.on_leaves_of(grid);
   const double most = expected_here(rising_by(grid, kAtOnce)) / (1 - kMostBetween);
-  const std::span<const double> from = std::span(kGradations).first(curved ? kGradations.size() : kOfFirstOrder);
-  const auto enough = std::ranges::find_if(from.begin(), from.end() - 1,
-                                           [&](double g) { return expected_here(rising_by(grid, g)) <= most; });
-  return *enough;
+  const auto end = std::ranges::find(kGradations, steepest);
+  return *std::find_if(kGradations.begin(), end, [&](double g) { return expected_here(rising_by(grid, g)) <= most; });
 }
 
 }  // namespace octafront

@@ -107,6 +107,7 @@ class Remesher {
     rules.gradation = std::max(rules.gradation, work_.limits.rise);
     rules.least = work_.limits.least;
     rules.narrowest = work_.limits.narrowest_strip;
+    rules.size_per_width = std::max(rules.size_per_width, work_.limits.per_strip);
     return rules;
   }
 

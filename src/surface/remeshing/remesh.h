@@ -37,6 +37,8 @@ struct FrontLimits {
   double least = 0, narrowest_strip = 0;
   /// From strips sizes may rise so fast, or as fast as elsewhere if that is faster.
   double rise = 0;
+  /// Sizes in strips are no smaller than so many widths of them.
+  double per_strip = 0;
 };
 
 /// The surface front. Requires a clean surface (see surface_mesh.h). The result is checked: closed, manifold, same

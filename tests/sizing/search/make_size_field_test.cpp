@@ -75,6 +75,30 @@ TEST(SizeField, GradationFollowsFromTheSpreadOfSizes) {
   EXPECT_EQ(gradation_of(icosphere(3), spread), 0.2);
 }
 
+/// A ball with small cavities in it: sizes rise from each of them.
+SurfaceMesh ball_with_bubbles() {
+  SurfaceMesh made = icosphere(3);
+  for (const double x : {-0.5, -0.25, 0.0, 0.25, 0.5})
+    for (const double y : {-0.5, -0.25, 0.0, 0.25, 0.5}) {
+      SurfaceMesh bubble = icosphere(1);
+      const auto first = static_cast<VertexIndex>(made.points.size());
+      for (const Vec3& p : bubble.points) made.points.push_back(0.02 * p + Vec3{x, y, 0});
+      for (const auto& [a, b, c] : bubble.triangles) made.triangles.push_back({first + a, first + c, first + b});
+    }
+  return made;
+}
+
+TEST(SizeField, OfTrueGeometrySizesMayRiseFaster) {
+  const SurfaceMesh surface = ball_with_bubbles();
+  const KnownSurface known(surface, Features{});
+  const auto gradation = [&](double turns) {
+    StageReport report;
+    return as_octree_field(make_size_field(known, {}, {RunContext{}, report}, {.turns = turns}))->gradation;
+  };
+  EXPECT_EQ(gradation(0), kSteepestGradation);
+  EXPECT_GT(gradation(12), kSteepestGradation);
+}
+
 TEST(ExpectedTets, MeetsTheTarget) {
   for (const std::int64_t elements : {3000, 100000, 2000000}) {
     SizeOptions o;

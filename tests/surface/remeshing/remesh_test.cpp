@@ -395,6 +395,18 @@ TEST(Remesh, LeavesStripsAsTheyComeWhereTold) {
   EXPECT_LT(2 * coarse.surface.triangles.size(), remesh(plate, 0.1).surface.triangles.size());
 }
 
+TEST(Remesh, StripsMayBeServedByWiderElements) {
+  const SurfaceMesh plate = box(2, 2, 0.04);
+  const KnownSurface known(plate, detect_features(plate, 40));
+  const auto size_at_rim = [&](const FrontLimits& limits) {
+    StageReport report;
+    const Remeshed r = remesh_surface(known, SizeField::uniform(0.1), {}, {{}, report}, {}, limits);
+    return r.sizes.at({0, 0.5, 0.02});
+  };
+  EXPECT_NEAR(size_at_rim({}), 0.06, 0.005);
+  EXPECT_NEAR(size_at_rim({.per_strip = 2}), 0.08, 0.005);
+}
+
 TEST(Remesh, PointsOfLinesSideBySideFaceEachOther) {
   // A bar one element thick. Where every line keeps the division that it got by itself the mean is .853.
   const SurfaceMesh bar = box(3.05, 0.09, 0.13);
