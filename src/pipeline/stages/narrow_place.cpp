@@ -149,12 +149,15 @@ class Around {
     const Triangle &a = input_.triangles[s], &b = input_.triangles[t];
     return std::find_first_of(a.begin(), a.end(), b.begin(), b.end()) != a.end();
   }
-  /// From corners and middles of edges of the one to the other, through a body.
+  /// From corners and middles of edges of the one, and where it lies nearest to the element, to the other, through a
+  /// body.
   void look_at_gap(std::uint32_t s, std::uint32_t t) {
     // The cosine of how far from straight across: 60 degrees.
     constexpr double kAcross = 0.5;
-    for (int i = 0; i < 6; ++i) {
-      const Vec3 p = i < 3 ? point(s, i) : (point(s, i) + point(s, i + 1)) / 2;
+    for (int i = 0; i < 7; ++i) {
+      const Vec3 p = i < 3   ? point(s, i)
+                     : i < 6 ? (point(s, i) + point(s, i + 1)) / 2
+                             : closest_point_on_triangle(center_, point(s, 0), point(s, 1), point(s, 2));
       const Vec3 q = closest_point_on_triangle(p, point(t, 0), point(t, 1), point(t, 2));
       const double gap = distance(p, q);
       if (std::abs(dot(normal(s), q - p)) < kAcross * gap || std::abs(dot(normal(t), q - p)) < kAcross * gap) continue;

@@ -41,6 +41,9 @@ TEST(NarrowPlace, AGapThroughABodyAndNoneBetweenBodies) {
   const SurfaceMesh plate = testing::box(1, 1, .01);
   EXPECT_TRUE(
       names_what(narrow_place_at(plate, element_at({.4, .4, 0}, .1), false), "walls of the input are 0.01 apart"));
+  EXPECT_TRUE(
+      names_what(narrow_place_at(plate, element_at({.25, .25, 0}, .05), false), "walls of the input are 0.01 apart"))
+      << "far from all corners";
   const SurfaceMesh apart = testing::joined(testing::cube(1), testing::transformed(testing::cube(1), 1, {1.01, 0, 0}));
   EXPECT_FALSE(narrow_place_at(apart, element_at({.85, .4, .4}, .1), false));
 }
