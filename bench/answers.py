@@ -59,7 +59,7 @@ def runs(program, order, volume, diagonal):
 
 
 CONSTANTS_OF = ("plate, hole of 0.3 of its width", "stepped shaft", "cavity")
-PARTS, NOTCH_TURNS, GRADATIONS = (7, 10, 14, 20, 28), (8, 12, 16, 20, 32, 48), (.12, .2, .3, .4)
+PARTS, NOTCH_TURNS, GRADATIONS = (7, 10, 14, 20, 28), (8, 12, 16, 20, 32, 48), (.12, .2, .3, .4, .6, .8)
 
 
 def constants(program, diagonal):
