@@ -264,9 +264,12 @@ class SeamedFront : public FrontKind {
   }
 
   /// Chords across edges of coarse facets come nearer as they get shorter; in noise there are only more of them.
-  static bool is_noise(const Straying& first, const Straying& now) {
-    return first.places > kNoise * first.triangles && now.triangles > kManyMore * first.triangles &&
-           now.places >= first.places && now.beyond * first.places > kNoNearer * first.beyond * now.places;
+  /// In a periodic cell the second look costs the same faces on opposite sides: what is many at first is noise there.
+  bool is_noise(const Straying& first, const Straying& now) const {
+    if (!(first.places > kNoise * first.triangles)) return false;
+    if (work_.periods.cell.is_periodic()) return true;
+    return now.triangles > kManyMore * first.triangles && now.places >= first.places &&
+           now.beyond * first.places > kNoNearer * first.beyond * now.places;
   }
 
   /// Points of the complex where the draft strays still. What is left then lies beside seams: another round has to

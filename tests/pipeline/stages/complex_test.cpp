@@ -14,6 +14,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <numbers>
 #include <set>
 #include <string>
 #include <utility>
@@ -312,6 +313,43 @@ TEST(Complex, WhatTouchesItselfKeepsItsVolumeAndHasNoNamesOfItsOwn) {
       for (const std::string& name : r.mesh.patch_names)
         EXPECT_NE(name, "body") << "of a plain body patches have no names";
     }
+  }
+}
+
+/// A torus without a hole: its tube touches itself in the middle, where its inner ring is one vertex.
+SurfaceMesh pinched_torus(std::uint32_t around, std::uint32_t along_tube) {
+  SurfaceMesh torus;
+  torus.points.push_back({0, 0, 0});
+  for (std::uint32_t i = 0; i < around; ++i)
+    for (std::uint32_t k = 1; k < along_tube; ++k) {
+      const double a = 2 * std::numbers::pi * i / around, b = 2 * std::numbers::pi * k / along_tube;
+      torus.points.push_back({(1 - std::cos(b)) * std::cos(a), (1 - std::cos(b)) * std::sin(a), -std::sin(b)});
+    }
+  const auto at = [&](std::uint32_t i, std::uint32_t k) {
+    return k % along_tube == 0 ? 0 : 1 + (i % around) * (along_tube - 1) + k - 1;
+  };
+  for (std::uint32_t i = 0; i < around; ++i)
+    for (std::uint32_t k = 0; k < along_tube; ++k) {
+      const VertexIndex a = at(i, k), b = at(i + 1, k), c = at(i + 1, k + 1), d = at(i, k + 1);
+      if (k > 0) torus.triangles.push_back({a, b, c});
+      if (k + 1 < along_tube) torus.triangles.push_back({a, c, d});
+    }
+  return torus;
+}
+
+TEST(Complex, ATorusThatIsPinchedInAVertexIsMeshedAsItIs) {
+  const SurfaceMesh torus = pinched_torus(24, 16);
+  const auto complex = complex_of_walls(torus);
+  ASSERT_TRUE(complex);
+  for (const bool kept : {true, false}) {
+    Options options;
+    options.surface.keep = kept;
+    options.size.size = 0.3;
+    const Result r = generate(complex->surface, options);
+    EXPECT_EQ(first_defect(r.mesh), std::nullopt);
+    EXPECT_NEAR(volume_of(r.mesh) / enclosed_volume(torus), 1, kept ? 1e-9 : 0.01);
+    EXPECT_EQ(r.report.regions.size(), 1U);
+    EXPECT_GT(r.report.quality.dihedral_min, kept ? 2 : 15);
   }
 }
 
