@@ -344,7 +344,7 @@ TEST(Complex, ATorusThatIsPinchedInAVertexIsMeshedAsItIs) {
   for (const bool kept : {true, false}) {
     Options options;
     options.surface.keep = kept;
-    options.size.size = 0.3;
+    options.size.size = 0.25;
     const Result r = generate(complex->surface, options);
     EXPECT_EQ(first_defect(r.mesh), std::nullopt);
     EXPECT_NEAR(volume_of(r.mesh) / enclosed_volume(torus), 1, kept ? 1e-9 : 0.01);
