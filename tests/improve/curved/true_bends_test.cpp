@@ -4,14 +4,13 @@
 #include <octafront/validity.h>
 
 #include "../start_meshes.h"
-#include "base/geometry/true_geometry.h"
 #include "improve/curved/curved.h"
+#include "support/parts_by_patch.h"
 
 #include <algorithm>
 #include <cmath>
 #include <optional>
 #include <span>
-#include <string>
 #include <vector>
 
 #include <gtest/gtest.h>
@@ -23,11 +22,12 @@ constexpr int kCubes = 8;
 constexpr double kEdge = 1.0 / kCubes;
 
 /// The sides of the unit cube as patches, of which one lies elsewhere.
-class Sides6 final : public TrueGeometry {
+class Sides6 final : public testing::PartsByPatch {
  public:
   /// The side z = 1 lies at 1 + height(p).
   using Height = double (*)(Vec3);
-  Sides6(const TetMesh& cube, Height height) : height_(height), side_of_(6) {
+  Sides6(const TetMesh& cube, Height height)
+      : PartsByPatch({"a", "b", "c", "d", "e", "f"}), height_(height), side_of_(6) {
     for (std::size_t f = 0; f < cube.boundary.size(); ++f)
       for (std::uint32_t side = 0; side < 6; ++side)
         if (lies_on(cube, cube.boundary[f], side)) side_of_[cube.patch[f]] = side;
@@ -39,11 +39,6 @@ class Sides6 final : public TrueGeometry {
     return p;
   }
   bool is_vertex(Vec3) const override { return false; }
-  const std::vector<std::string>& patch_names() const override { return names_; }
-  std::uint32_t part_at(std::uint32_t patch, Vec3) const override { return patch; }
-  const std::vector<std::string>& part_names() const override { return names_; }
-  std::uint32_t patch_of_part(std::uint32_t part) const override { return part; }
-  const std::vector<PartGroup>& groups() const override { return groups_; }
 
  private:
   /// Sides 0 to 5: x = 0, x = 1, y = 0, ...
@@ -61,8 +56,6 @@ class Sides6 final : public TrueGeometry {
 
   Height height_;
   std::vector<std::uint32_t> side_of_;  ///< per patch
-  std::vector<std::string> names_{"a", "b", "c", "d", "e", "f"};
-  std::vector<PartGroup> groups_;
 };
 
 double highest(const TetMesh& mesh) {

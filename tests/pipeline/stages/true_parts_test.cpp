@@ -7,6 +7,7 @@
 
 #include "base/geometry/true_geometry.h"
 #include "support/named_surfaces.h"
+#include "support/parts_by_patch.h"
 
 #include <algorithm>
 #include <memory>
@@ -77,8 +78,9 @@ TEST(TrueParts, WhereAllHaveFacesNothingIsSaid) {
 }
 
 /// The unit cube without its top: patches 0 and 1 are the faces at x = 0 and x = 1, 2 and 3 those of y, 4 the bottom.
-class OpenBox final : public TrueGeometry {
+class OpenBox final : public testing::PartsByPatch {
  public:
+  OpenBox() : PartsByPatch({"x0", "x1", "y0", "y1", "bottom"}) {}
   std::optional<Vec3> on_face(std::uint32_t patch, Vec3 p) const override { return onto(patch, p); }
   std::optional<Vec3> on_edge(std::span<const std::uint32_t> patches, Vec3 p) const override {
     std::vector<std::uint32_t> known;
@@ -90,19 +92,12 @@ class OpenBox final : public TrueGeometry {
   bool is_vertex(Vec3 p) const override {
     return (p.x == 0 || p.x == 1) && (p.y == 0 || p.y == 1) && (p.z == 0 || p.z == 1);
   }
-  const std::vector<std::string>& patch_names() const override { return names_; }
-  std::uint32_t part_at(std::uint32_t patch, Vec3) const override { return patch; }
-  const std::vector<std::string>& part_names() const override { return names_; }
-  std::uint32_t patch_of_part(std::uint32_t part) const override { return part; }
-  const std::vector<PartGroup>& groups() const override { return groups_; }
 
  private:
   static Vec3 onto(std::uint32_t patch, Vec3 p) {
     (patch < 2 ? p.x : patch < 4 ? p.y : p.z) = patch < 4 ? patch % 2 : 0;
     return p;
   }
-  std::vector<std::string> names_{"x0", "x1", "y0", "y1", "bottom"};
-  std::vector<PartGroup> groups_;
 };
 
 Domain closed_box() {
