@@ -5,6 +5,7 @@
 #include <array>
 #include <functional>
 #include <string>
+#include <vector>
 
 #include <gtest/gtest.h>
 
@@ -46,6 +47,17 @@ TEST(WorkingMesh, IsConsistentAfterEachOperation) {
   EXPECT_EQ(mesh.first_inconsistency(), std::nullopt);
   EXPECT_GT(flips, 10);
   EXPECT_GT(collapses, 10);
+
+  const WorkingMesh before = mesh;
+  const std::vector<std::uint32_t> alive = before.alive_triangles();
+  ASSERT_LT(alive.size(), before.triangle_count());
+  const std::vector<VertexIndex> former = mesh.compact();
+  EXPECT_EQ(mesh.first_inconsistency(), std::nullopt);
+  EXPECT_EQ(mesh.alive_triangles().size(), mesh.triangle_count());
+  EXPECT_EQ(mesh.made_triangles(), before.triangle_count());
+  ASSERT_EQ(mesh.triangle_count(), alive.size());
+  for (std::uint32_t t = 0; t < alive.size(); ++t)
+    for (std::size_t i = 0; i < 3; ++i) EXPECT_EQ(former[mesh.triangle(t)[i]], before.triangle(alive[t])[i]);
 }
 
 TEST(WorkingMesh, FindsWhatIsBroken) {
