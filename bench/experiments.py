@@ -46,11 +46,11 @@ class Experiments:
         surfaces.write_off(self.work / "dragon.off", *surfaces.boundary_of_medit(mesh))
 
     def compare(self):
-        self.run(self.octafront, "compare", *MODELS, self.work / "dragon.off", "-o", self.work / "compare", "--elements",
+        self.run(sys.executable, "bench/compare.py", self.octafront, *MODELS, self.work / "dragon.off", "-o", self.work / "compare", "--elements",
                  COUNTS, "--threads", "1")
 
     def growth(self):
-        self.run(self.octafront, "compare", CLEAN / "bunny00.off", "-o", self.work / "growth", "--elements", GROWTH,
+        self.run(sys.executable, "bench/compare.py", self.octafront, CLEAN / "bunny00.off", "-o", self.work / "growth", "--elements", GROWTH,
                  "--threads", "1")
 
     def skull(self):

@@ -25,9 +25,9 @@ from peers.process import finish, run_measured  # noqa: E402
 # Name, file, options, what octafront_judge_image is told.
 ALL = ["--ignore", "none"]
 TURN = ["--curvature", "24"]
-VOLUMES = [("liver, 6 mm", "liver.inr.gz", ["--size", "6"], []),
-           ("liver, 6 mm, 24 a turn", "liver.inr.gz", ["--size", "6", *TURN], []),
-           ("liver, 3 mm", "liver.inr.gz", ["--size", "3"], []),
+VOLUMES = [("liver, 6 mm", "liver.nrrd", ["--size", "6"], []),
+           ("liver, 6 mm, 24 a turn", "liver.nrrd", ["--size", "6", *TURN], []),
+           ("liver, 3 mm", "liver.nrrd", ["--size", "3"], []),
            ("KmeansTest, 6 mm", "KmeansTest_T1KmeansPrelimSegmentation.nii.gz", [*ALL, "--size", "6"], ["all"]),
            ("skull strip, 6 mm", "KmeansTest_T1RawSkullStrip.nii.gz", [*ALL, "--size", "6"], ["all"]),
            ("JHU white matter 2 mm, automatic", "JHU-WhiteMatter-labels-2mm.nii.gz", [], []),
@@ -38,8 +38,8 @@ VOLUMES = [("liver, 6 mm", "liver.inr.gz", ["--size", "6"], []),
            ("jhu189, 4 mm", "jhu189.nii.gz", ["--size", "4"], []),
            ("aal, 4 mm", "aal.nii.gz", ["--size", "4"], []),
            ("inia19, 2 mm", "inia19-NeuroMaps.nii.gz", ["--size", "2"], []),
-           ("Cranium, 226 and more", "Cranium.inv3", ["--iso", "226"], ["iso=226"]),
-           ("Cranium, its mask", "Cranium.inv3", ["--series", "2"], ["series=2"]),
+           ("Cranium, 226 and more", "Cranium.nrrd", ["--iso", "226"], ["iso=226"]),
+           ("Cranium, its mask", "Cranium-mask.nrrd", [], []),
            ("Cranium as DICOM", "Cranium.inv3", ["--iso", "226"], ["iso=226"])]
 # Volumes above that CGAL meshes too, at this size.
 PEERS = {"liver, 6 mm": 6, "liver, 3 mm": 3, "KmeansTest, 6 mm": 6, "HarvardOxford, 4 mm": 4}
@@ -178,8 +178,8 @@ def beside(build, volumes, names, timeout, results):
             continue
         with tempfile.TemporaryDirectory() as folder:
             image = pathlib.Path(folder, "image.inr")
-            if file.endswith(".inr.gz"):
-                image.write_bytes(gzip.decompress((volumes / file).read_bytes()))
+            if file.endswith(".nrrd"):
+                image.write_bytes(gzip.decompress((volumes / file).with_suffix(".inr.gz").read_bytes()))
             else:
                 as_inr(volumes / file, image)
             outcome = mesh_with_cgal(build, image, folder, timeout, PEERS[name])

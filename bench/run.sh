@@ -79,6 +79,7 @@ cmake --build --preset release --target octafront_cli octafront_evaluate octafro
 [ "$1" != improve ] || cmake --build --preset release --target octafront_never_worse
 [ "$1" != formats ] || { cmake --build --preset release --target octafront_write_formats; exec python3 bench/formats.py build/release "${@:2}"; }
 [ "$1" != parts ] || { cmake --build --preset release --target octafront_write_parts; exec python3 bench/parts.py build/release "${@:2}"; }
+[ "$1" != threads ] || cmake --build --preset release --target octafront_threads
 [ "$1" != second_order ] || cmake --build --preset release --target octafront_second_order
 [ "$1" != complexes ] || cmake --build --preset release --target make_complexes
 [ "$1" != known_answers ] || cmake --build --preset release --target octafront_judge_answer

@@ -3,12 +3,11 @@
 
     bench/threads.py BUILD [--model FILE] [--elements 1e6,4e6] [--runs 3] [--page]
 
-One thread does all, and every task of parallel.h is timed (src/base/core/forecast.h), so any machine will do. Of several
+One thread does all, and every task of parallel.h is timed (bench/forecast.h), so any machine will do. Of several
 runs the one of least time counts.
 """
 import argparse
 import json
-import os
 import pathlib
 import subprocess
 import tempfile
@@ -16,31 +15,22 @@ import tempfile
 from origin import ROOT, written_by
 
 STAGES = ["repair", "detail", "features", "size field", "surface front", "volume front", "improve", "check"]
-REST = "reading, quality, hash, writing"
+REST = "reading, writing"
 THREADS = (2, 16, 64)
 KEYS = ("seconds", "serial seconds", "regions", *(f"seconds with {n} threads" for n in THREADS))
 
 
-def forecast_of(counters):
-    return {key: counters.get(f"forecast: {key}", 0) for key in KEYS}
-
-
-def run(octafront, model, elements):
+def run(program, model, elements):
     """The forecast of each stage, of the rest, and of the process."""
     with tempfile.TemporaryDirectory() as folder:
-        report = pathlib.Path(folder, "report.json")
-        done = subprocess.run([octafront, "mesh", model, "-o", pathlib.Path(folder, "mesh.vtu"), "--elements", f"{elements:.0f}",
-                               "--threads", "1", "--json", report, "-q"], check=True, capture_output=True, text=True,
-                              env={**os.environ, "OCTAFRONT_FORECAST": "16"})
-        told = json.loads(report.read_text())
-    whole = json.loads(done.stderr.splitlines()[-1])
-    stages = {}
-    for stage in told["stages"]:  # earlier tries for the number of elements stand by themselves, and belong to their stage
-        name = next((s for s in STAGES if stage["name"].startswith(s)), stage["name"])
-        of_stage = forecast_of(stage["counters"])
-        stages[name] = {key: stages.get(name, {}).get(key, 0) + value for key, value in of_stage.items()}
+        told = json.loads(subprocess.run([program, model, f"{elements:.0f}", pathlib.Path(folder, "mesh.vtu")], check=True,
+                                         capture_output=True, text=True).stdout)
+    stages, whole = {}, told["whole"]
+    for named, found in told["stages"]:  # several tries for a number of elements belong to one stage
+        name = next((s for s in STAGES if named.startswith(s)), named)
+        stages[name] = {key: stages.get(name, {}).get(key, 0) + found[key] for key in KEYS}
     stages[REST] = {key: whole[key] - sum(s[key] for s in stages.values()) for key in KEYS}
-    return {"tets": told["tets"], "hash": told["hash"], "stages": stages, "whole": whole}
+    return {**told, "stages": stages}
 
 
 def row(name, of_stage, whole):
@@ -79,7 +69,7 @@ def main():
     a = parser.parse_args()
     told = []
     for elements in map(float, a.elements.split(",")):
-        runs = [run(a.build / "cli/octafront", a.model, elements) for _ in range(a.runs)]
+        runs = [run(a.build / "bench/octafront_threads", a.model, elements) for _ in range(a.runs)]
         assert len({r["hash"] for r in runs}) == 1, runs
         told.append(min(runs, key=lambda r: r["whole"]["seconds"]))
         print("\n".join([f"{told[-1]['tets']:,} elements, hash {told[-1]['hash']}", *rows(told[-1]), ""]), flush=True)

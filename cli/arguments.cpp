@@ -139,7 +139,7 @@ void declare_input(CLI::App& command, Arguments& a, const std::string& what) {
       ".mesh; -: from standard input; or several files, a body each. Or CAD: STEP, IGES, BREP. Or an image of labels "
       "or grey values: NIfTI, "
       "NRRD, "
-      "MetaImage, INR, raw with JSON, .inv3, DICOM (a folder or its files). Or a formula";
+      "MetaImage, raw with JSON, DICOM (a folder or its files). Or a formula";
   command
       .add_option_function<std::vector<std::string>>(
           "input",
@@ -424,17 +424,6 @@ void declare_run(CLI::App& command, Arguments& a) {
           "CPU seconds of all threads at most; then the run ends without a result")
       ->type_name("S");
   group->add_flag("-q,--quiet", a.quiet, "Print nothing but errors");
-}
-
-void declare_checkpoint(CLI::App& command, Arguments& a) {
-  auto* group = command.add_option_group("Going on");
-  group->add_option("--checkpoint", a.checkpoint, "Keep what long stages make in a folder, to go on from there")
-      ->type_name("DIR");
-  group
-      ->add_option("--resume", a.resume,
-                   "Go on with what --checkpoint has kept of the same input and options, and keep on keeping")
-      ->type_name("DIR")
-      ->excludes("--checkpoint");
 }
 
 /// NAME=H, where the name may have signs of equality of its own.

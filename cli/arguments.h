@@ -63,7 +63,6 @@ struct Arguments {
   int new_order = 0;              ///< of a converted mesh; 0: as it is
   int threads = 0;
   ProcessLimits limits;
-  std::filesystem::path checkpoint, resume;  ///< folders; empty: none
   bool quiet = false;
   OptionNames names;
   std::vector<std::string> words_with_line_ends;           ///< of the command line
@@ -94,8 +93,6 @@ void declare_preset(CLI::App& command, Arguments& arguments);
 void declare_dry_run(CLI::App& command, Arguments& arguments);
 void declare_report(CLI::App& command, Arguments& arguments);
 void declare_run(CLI::App& command, Arguments& arguments);
-/// --checkpoint and --resume.
-void declare_checkpoint(CLI::App& command, Arguments& arguments);
 void declare_sizes(CLI::App& command, Arguments& arguments);
 void declare_surface(CLI::App& command, Arguments& arguments);
 void declare_periodic(CLI::App& command, Arguments& arguments);

@@ -202,11 +202,9 @@ void run_mesh(Session& session) {
     check_mesh_targets(a);
     check_page_target(a.page);
   });
-  const bool resumes = !a.resume.empty();
-  const Checkpoints checkpoints{(resumes ? a.resume : a.checkpoint).string(), resumes};
   Result result = run_on_input(session, [&](const Domain& domain, const Options& options, const RunContext& context) {
     if (context.ranks != nullptr) context.ranks->shares_tets = true;
-    return generate_with(checkpoints, domain, options, context);
+    return generate(domain, options, context);
   });
   if (result.is_share && !takes_shares(a)) gather_at_first(result, session.context());
   const std::vector<PoorElement> worst = worst_elements(result, kWorstListed, session.context());

@@ -162,7 +162,7 @@ std::array<VoxelRange, 3> voxel_ranges(const std::string& typed) {
 }
 
 void declare_image_choice(CLI::App& command, ImageIntake& a) {
-  add(command, "--series", "N", "Which of several images of a folder, a file or a project, counted from 1",
+  add(command, "--series", "N", "Which of several images of a folder or a file, counted from 1",
       [&a](const std::string& typed) {
         const std::int64_t n = whole("--series", typed, typed);
         if (n < 1 || n > 0xffffffff) refuse("--series", typed, "is not counted from 1");

@@ -134,7 +134,6 @@ void Program::declare_makers() {
   declare_split(*mesh, a);
   declare_page(*mesh, a);
   declare_report(*mesh, a);
-  declare_checkpoint(*mesh, a);
   declare_run(*mesh, a);
 }
 
@@ -261,11 +260,6 @@ void Program::declare_lookers() {
   declare_output(*report, a, "Web page: .html, one file that needs no network", true);
   declare_report(*report, a);
   declare_run(*report, a);
-
-  CLI::App* compare = add("compare", "Mesh surfaces with several methods; tables and charts of how they do",
-                          "  octafront compare a.stl b.ply -o out --elements 1e4,1e5\n",
-                          [this](Session& session) { run_compare(compare_, session); });
-  declare_compare(*compare, compare_);
 }
 
 void Program::declare_helpers() {
@@ -301,9 +295,8 @@ std::string command_line_of(int argc, const char* const* argv) {
 }
 
 Arguments& Program::arguments(int argc, char** argv) {
-  const CLI::App& command = *app_.get_subcommands().front();
-  Arguments& a = command.get_name() == "compare" ? compare_.common : arguments_;
-  note_command(command, a);
+  Arguments& a = arguments_;
+  note_command(*app_.get_subcommands().front(), a);
   a.command_line = command_line_of(argc, argv);
   a.words_with_line_ends = words_with_line_ends(argc, argv);
   set_process_limits(a.limits);

@@ -1,7 +1,6 @@
 #pragma once
 
 #include "arguments.h"
-#include "compare.h"
 #include "session.h"
 
 #include <functional>
@@ -32,7 +31,6 @@ class Program {
 
   CLI::App app_{"Octafront: tetrahedral meshes from closed surfaces", "octafront"};
   Arguments arguments_;
-  CompareArguments compare_;
   std::string topic_, shell_;
   bool wants_manual_ = false;
   std::function<void(Session&)> chosen_;

@@ -19,9 +19,6 @@ std::vector<std::string> words_with_line_ends(int argc, const char* const* argv)
 /// Text of JSON with control characters as \u00NN where JSON itself lets them be.
 std::string printable_json(const std::string& text);
 
-/// `text` as a field of CSV: in quotes where it holds commas, quotes or line ends.
-std::string csv_field(const std::string& text);
-
 /// `text` as one word of a command line for a POSIX shell.
 std::string quoted_for_shell(const std::string& text);
 

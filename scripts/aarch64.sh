@@ -14,7 +14,7 @@ toolchain=-DCMAKE_TOOLCHAIN_FILE=$PWD/cmake/aarch64-linux-gnu.cmake
 build_tbb_and_fmt "$work" "$toolchain"
 build_static_zlib "$work" aarch64-linux-gnu
 arguments="$toolchain -DCMAKE_PREFIX_PATH=$work/inside -DZLIB_USE_STATIC_LIBS=ON -DZLIB_INCLUDE_DIR=$work/inside/include
-  -DZLIB_LIBRARY=$work/inside/lib/libz.a -DOCTAFRONT_CAD=OFF -DOCTAFRONT_CAIRO=OFF -DOCTAFRONT_OLDEST_GLIBC=$glibc"
+  -DZLIB_LIBRARY=$work/inside/lib/libz.a -DOCTAFRONT_CAD=OFF -DOCTAFRONT_OLDEST_GLIBC=$glibc"
 [ -z "${CMAKE_CXX_COMPILER_LAUNCHER:-}" ] || arguments+=" -DCMAKE_CXX_COMPILER_LAUNCHER=$CMAKE_CXX_COMPILER_LAUNCHER"
 arguments=${arguments//$'\n'/ }
 

@@ -130,7 +130,7 @@ class Attack:
                   "box:0,0,0,1,1,1", "box:nan,0,0,1,1,1", "a=1", "a=nan", "a=box:0,0,0,1,1,1", "0,0,0=1:1", "0,0,0", "1e300,1e300,1e300", "xyz",
                   "360/0@z", "1e-300@z", "0,0,0,0,0,0", "first", "2mm", "2parsec", "9" * 400]
         commands = {}
-        for command in ("mesh", "surface", "repair", "size", "improve", "adapt", "convert", "info", "check", "report", "compare"):
+        for command in ("mesh", "surface", "repair", "size", "improve", "adapt", "convert", "info", "check", "report"):
             text = subprocess.run([self.program, "help", command], capture_output=True, text=True).stdout
             commands[command] = sorted(set(re.findall(r"(?<![\w-])--[a-z][a-z-]+", text)) - {"--json", "--help", "--man"})
         mesh = self.folder / "mesh.msh"
@@ -140,7 +140,7 @@ class Attack:
             command = self.random.choice(sorted(commands))
             place = self.fresh()
             outputs = {"mesh": "o.vtu", "surface": "o.ply", "repair": "o.ply", "improve": "o.vtu", "adapt": "o.vtu", "convert": "o.vtu",
-                       "report": "o.html", "compare": "o"}
+                       "report": "o.html"}
             words = [command, mesh if command in ("improve", "adapt", "convert", "report") else self.folder / "box.off"]
             if command in outputs:
                 words += ["-o", place / outputs[command]]
@@ -149,7 +149,7 @@ class Attack:
                 words += [option, *([self.random.choice(self.random.choice((values, likely)))] if self.random.random() < 0.9 else [])]
             if not {"--cpu-seconds", "--max-elements"} & set(map(str, words)):
                 words += ["--cpu-seconds", "5", "--max-elements", "200000"]
-            if self.run(*words, json_to_stdout=command != "compare", cwd=place):
+            if self.run(*words, cwd=place):
                 self.judge_folder(place, (), words)
 
     def files(self, runs):
@@ -165,7 +165,7 @@ class Attack:
         (place / "closed").chmod(0)
         (place / "text").write_text("hello\n")
         endings = ("off", "stl", "obj", "ply", "msh", "vtu", "vtk", "inp", "bdf", "unv", "med", "xdmf", "mesh", "meshb", "vol", "ele", "nii",
-                   "nii.gz", "nrrd", "mhd", "mha", "inr", "inv3", "raw", "json", "dcm", "step", "stpz", "iges", "brep", "poly", "")
+                   "nii.gz", "nrrd", "mhd", "mha", "raw", "json", "dcm", "step", "stpz", "iges", "brep", "poly", "")
         for ending in endings:
             for name in ("empty", "zeros", "text", "gone", "loop"):
                 at = place / f"{name}.{ending}" if ending else place / name

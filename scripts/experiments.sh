@@ -7,7 +7,7 @@ cd "$(dirname "$0")/.."
 source scripts/lib/apt.sh
 
 need_packages "${build_packages[@]}" "${peer_packages[@]}" libcgal-dev libgmp-dev libmpfr-dev libboost-dev python3 \
-  python3-vtk9 xvfb xauth
+  python3-matplotlib python3-vtk9 xvfb xauth
 [ -d models/ct ] && [ -d models/clean ] || scripts/get-models.sh --ct
 cmake --preset release -DOCTAFRONT_BUILD_BENCH=ON -DOCTAFRONT_BUILD_TESTS=OFF >/dev/null
 cmake --build --preset release --target octafront_cli octafront_evaluate

@@ -20,6 +20,7 @@ cp "$work"/usr/share/doc/insighttoolkit5-examples/examples/Data/BrainProtonDensi
 cp "$work"/usr/share/doc/invesalius-examples/examples/Cranium.inv3 volumes/
 tar -C "$work" -xzf "$work"/usr/share/doc/libcgal-dev/data.tar.gz data/images
 cp "$work"/data/images/*.inr* "$work"/data/images/420.polylines.txt volumes/
+/usr/bin/python3 scripts/lib/volumes_as_nrrd.py volumes
 if [ "${1:-}" = --readers ]; then
   mkdir -p volumes/nibabel volumes/pydicom
   find "$work" -path '*nibabel/tests/data/*' \( -name '*.nii*' -o -name '*.hdr' \) -exec cp {} volumes/nibabel \;

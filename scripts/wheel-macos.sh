@@ -23,7 +23,7 @@ mkdir -p "$work" "$wheels"
 build_release uxlfoundation/oneTBB v2021.13.0 -DTBB_TEST=OFF -DTBB_STRICT=OFF -DTBBMALLOC_BUILD=OFF -Wno-dev
 build_release fmtlib/fmt 9.1.0 -DFMT_TEST=OFF -DFMT_DOC=OFF
 
-PYTHONPATH=python/backend python3 - "$work/wheel" "$wheels" "-DCMAKE_PREFIX_PATH=$work/inside -DOCTAFRONT_CAD=OFF -DOCTAFRONT_CAIRO=OFF" <<'PYTHON'
+PYTHONPATH=python/backend python3 - "$work/wheel" "$wheels" "-DCMAKE_PREFIX_PATH=$work/inside -DOCTAFRONT_CAD=OFF" <<'PYTHON'
 import sys, octafront_build
 print(octafront_build.build_wheel(sys.argv[2], {"build-dir": sys.argv[1], "cmake-args": sys.argv[3]}))
 PYTHON

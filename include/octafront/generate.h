@@ -42,18 +42,6 @@ std::vector<PoorElement> worst_elements(const Result& result, std::size_t count,
 /// Throws OptionError, InputError (defects, listed), MeshingError, Cancelled.
 Result generate(const Domain& domain, const Options& options = {}, const RunContext& context = {});
 
-/// Where a run keeps what its long stages make, so that it can go on if it was ended.
-struct Checkpoints {
-  std::string folder;  ///< that is made if it is not there; empty: nothing is kept
-  /// Goes on with what is kept there, by any number of ranks and threads. InputError if it was made of another input,
-  /// by other options or another version.
-  bool resume = false;
-};
-
-/// generate() with a folder to go on from: the same mesh. Throws OutputError, too.
-Result generate_with(const Checkpoints& checkpoints, const Domain& domain, const Options& options = {},
-                     const RunContext& context = {});
-
 /// The run up to the surface front: what the boundary of the mesh will be.
 struct SurfaceResult {
   SurfaceMesh surface;

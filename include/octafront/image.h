@@ -56,8 +56,8 @@ struct Image {
 
 /// Which image of a file or folder that holds several.
 struct ImageChoice {
-  /// Counted from 1 as the refusal lists them: a series of DICOM files, a volume of a file with four dimensions, the
-  /// image or a mask of an InVesalius project. 0: the only one, or of a project the image.
+  /// Counted from 1 as the refusal lists them: a series of DICOM files, a volume of a file with four dimensions. 0:
+  /// the only one.
   std::uint32_t series = 0;
 };
 
@@ -66,11 +66,11 @@ struct ImageChoice {
 bool is_image(const std::string& file);
 
 /// Reads NIfTI-1 and NIfTI-2 (.nii, .nii.gz, .hdr with .img; also Analyze 7.5), NRRD (.nrrd, .nhdr), MetaImage (.mha,
-/// .mhd), INR (.inr, .inr.gz), raw voxels with a JSON file of the same name beside them, InVesalius projects (.inv3),
-/// and DICOM: a file, a folder, or a list of files; recognised by content, the name breaks ties. Coordinates are those
-/// of the file's own convention, `Image::frame`: NIfTI RAS, DICOM and MetaImage LPS, NRRD what it says. Throws
-/// InputError with file, byte offset or line, and the reason; Cancelled. Memory is bounded by a small multiple of the
-/// size of the file, or of what its compressed stream really holds, whatever its header claims.
+/// .mhd), raw voxels with a JSON file of the same name beside them, and DICOM: a file, a folder, or a list of files;
+/// recognised by content, the name breaks ties. Coordinates are those of the file's own convention, `Image::frame`:
+/// NIfTI RAS, DICOM and MetaImage LPS, NRRD what it says. Throws InputError with file, byte offset or line, and the
+/// reason; Cancelled. Memory is bounded by a small multiple of the size of the file, or of what its compressed stream
+/// really holds, whatever its header claims.
 Image read_image(const std::vector<std::string>& files, const ImageChoice& choice = {},
                  const RunContext& context = no_context());
 Image read_image(const std::string& file, const ImageChoice& choice = {}, const RunContext& context = no_context());

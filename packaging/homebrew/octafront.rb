@@ -9,7 +9,6 @@ class Octafront < Formula
   depends_on "cmake" => :build
   depends_on "ninja" => :build
   depends_on "nlohmann-json" => :build
-  depends_on "pkgconf" => :build
   depends_on "fmt"
   depends_on "hdf5"
   depends_on "tbb"

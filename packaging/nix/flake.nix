@@ -13,8 +13,8 @@
           pname = "octafront";
           version = "0.1.0";
           src = ../..;
-          nativeBuildInputs = [ pkgs.cmake pkgs.ninja pkgs.pkg-config ];
-          buildInputs = [ pkgs.tbb pkgs.fmt pkgs.zlib pkgs.cli11 pkgs.nlohmann_json pkgs.hdf5 pkgs.cairo ];
+          nativeBuildInputs = [ pkgs.cmake pkgs.ninja ];
+          buildInputs = [ pkgs.tbb pkgs.fmt pkgs.zlib pkgs.cli11 pkgs.nlohmann_json pkgs.hdf5 ];
           cmakeFlags = [ "-DOCTAFRONT_CAD=OFF" "-DOCTAFRONT_BUILD_TESTS=OFF" "-DOCTAFRONT_BUILD_PYTHON=OFF" "-DOCTAFRONT_BUILD_EXAMPLES=OFF" ];
           meta.license = pkgs.lib.licenses.asl20;
           meta.mainProgram = "octafront";

@@ -110,7 +110,7 @@ def run(*command):
         subprocess.run([str(word) for word in command], check=True, stdout=sys.stderr)
     except FileNotFoundError:
         raise SystemExit(f"{command[0]} is not installed; octafront needs: apt-get install g++ cmake ninja-build "
-                         "pkg-config libtbb-dev zlib1g-dev libfmt-dev libcli11-dev nlohmann-json3-dev") from None
+                         "libtbb-dev zlib1g-dev libfmt-dev libcli11-dev nlohmann-json3-dev") from None
 
 
 def version():

@@ -75,8 +75,8 @@ def image_surface(image, affine=None, *, spacing=None, series=0, kind="auto", la
     each, named. Smooth, volumes of labels kept. report["regions"] has their names and volumes, report["notes"] what was
     decided and changed.
 
-    image: an array (ni, nj, nk) of numbers, which is copied; or a file (NIfTI, NRRD, MetaImage, INR, raw voxels with
-        JSON, InVesalius), a folder of DICOM, or a list of its files.
+    image: an array (ni, nj, nk) of numbers, which is copied; or a file (NIfTI, NRRD, MetaImage, raw voxels with JSON), a
+        folder of DICOM, or a list of its files.
     affine: of an array, (4, 4) from (i, j, k, 1) to the world, as nibabel's image.affine; or spacing: of voxels, one
         number or three. Without either voxels are cubes of 1. Voxel (0, 0, 0) has its middle at the origin of the map.
     series: of a file with several images the one that is meant, counted from 1.

@@ -21,8 +21,8 @@ need_packages() {
 }
 
 # What building needs, and what the tests need beyond it.
-build_packages=(g++ cmake ninja-build pkg-config libtbb-dev zlib1g-dev libfmt-dev libcli11-dev nlohmann-json3-dev libcairo2-dev libhdf5-dev)
-test_packages=(libgtest-dev librapidcheck-dev libmetis-dev python3 python3-numpy python3-venv dpkg-dev file)
+build_packages=(g++ cmake ninja-build libtbb-dev zlib1g-dev libfmt-dev libcli11-dev nlohmann-json3-dev libhdf5-dev)
+test_packages=(pkg-config libgtest-dev librapidcheck-dev libmetis-dev python3 python3-numpy python3-venv dpkg-dev file)
 # What octafront-cad stands on, which reads STEP, IGES and BREP; without it the rest is built.
 cad_packages=(libocct-data-exchange-dev libocct-ocaf-dev libocct-modeling-algorithms-dev libocct-modeling-data-dev libocct-foundation-dev)
 # What shares the work among processes (OCTAFRONT_MPI); without it the rest is built.

@@ -1,5 +1,4 @@
 """The command line as a user meets it: cli_test.py OCTAFRONT SAMPLES_DIR."""
-import csv
 import json
 import math
 import pathlib
@@ -792,57 +791,6 @@ class CommandLine(unittest.TestCase):
         self.assertEqual(run.returncode, 130, error)
         self.assertIn("interrupted", error)
         self.assertEqual(self.files(), ["part.off"])
-
-    def test_compare_writes_tables_and_charts(self):
-        samples = sorted(p for p in SAMPLES.iterdir() if p.suffix in (".stl", ".obj", ".off", ".ply"))
-        start = time.monotonic()
-        done = self.run_cli("compare", *samples, "-o", self.dir / "out", "--elements", "4000")
-        self.assertLess(time.monotonic() - start, 60)
-        rows = list(csv.DictReader((self.dir / "out" / "compare.csv").open()))
-        self.assertEqual([r["method"] for r in rows], ["octree-aft", "aft", "octree"] * len(samples))
-        for row in rows:
-            self.assertEqual(row["failure"], "")
-            self.assertAlmostEqual(int(row["elements"]) / 4000, 1, delta=0.4)
-            # The octree method loses walls thinner than its elements, and says so.
-            self.assertAlmostEqual(float(row["volume_over_input"]), 1, delta=0.7 if row["method"] == "octree" else 0.1)
-        runs = json.loads((self.dir / "out" / "compare.json").read_text())
-        self.assertEqual(len(runs["runs"]), len(rows))
-        self.assertEqual(runs["methods"]["octree-aft"]["failures"], 0)
-        if "without cairo" not in done.stdout:
-            for name in ("beta_classes", "time_elements", "stages"):
-                self.assertTrue((self.dir / "out" / f"{name}.png").read_bytes().startswith(b"\x89PNG"))
-                self.assertIn("<svg", (self.dir / "out" / f"{name}.svg").read_text())
-
-    def test_compare_shows_failures_and_fails(self):
-        bad = self.dir / "open.off"
-        bad.write_text(TETRAHEDRON.replace("4 4 0", "4 3 0").replace("3 0 2 1\n", ""))
-        done = self.run_cli("compare", bad, "-o", self.dir / "out", "--elements", "500", "--methods", "aft,octree",
-                            status=4)
-        self.assertIn("failed", done.stdout)
-        self.assertIn("1 of 2 runs made no mesh", done.stderr)
-        rows = list(csv.DictReader((self.dir / "out" / "compare.csv").open()))
-        self.assertIn("open", rows[0]["failure"])
-        self.assertEqual(rows[1]["failure"], "", "the octree method meshes an open surface")
-        self.run_cli("compare", self.part, "-o", self.part / "x", status=5)
-
-    def test_compare_refuses_what_it_cannot_do_before_the_work(self):
-        out = self.dir / "out"
-        for bad in ("100,-5", "0", "1.5"):
-            self.run_cli("compare", self.part, "-o", out, "--elements", bad, status=2)
-        self.assertIn("octree-aft, aft, octree",
-                      self.run_cli("compare", self.part, "-o", out, "--methods", "aft,magic", status=2).stderr)
-        out.mkdir()
-        os.link(self.part, out / "compare.csv")
-        self.assertIn("overwrite", self.run_cli("compare", self.part, "-o", out, status=2).stderr)
-        self.assertEqual(self.part.read_text(), TETRAHEDRON)
-
-    def test_compare_quotes_names(self):
-        name = 'a, "b"\nc'
-        (self.dir / (name + ".off")).write_text(TETRAHEDRON)
-        self.run_cli("compare", self.dir / (name + ".off"), "-o", self.dir / "out", "--methods", "octree")
-        with (self.dir / "out" / "compare.csv").open(newline="") as file:
-            rows = list(csv.DictReader(file))
-        self.assertEqual([r["model"] for r in rows], [name])
 
     def test_no_output_overwrites_an_input_or_another_output(self):
         link, hard, out = self.dir / "link.off", self.dir / "hard.off", self.dir / "o.vtu"

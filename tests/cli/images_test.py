@@ -261,8 +261,7 @@ class Images(unittest.TestCase):
 
     def test_lengths_with_units_know_the_image(self):
         self.run_cli("mesh", LABELS, "--dry-run", "--size", "1.2cm")
-        header = b"#INRIMAGE-4#{\nXDIM=2\nYDIM=2\nZDIM=2\nTYPE=unsigned fixed\nPIXSIZE=8 bits\nCPU=pc\n"
-        unknown = self.write("a.inr", header.ljust(252, b"\n") + b"##}\n" + b"\1" * 8)
+        unknown = self.write("a.nrrd", b"NRRD0004\ntype: uchar\ndimension: 3\nsizes: 2 2 2\nencoding: raw\n\n" + b"\1" * 8)
         self.assertIn("--unit", self.run_cli("mesh", unknown, "--dry-run", "--size", "1cm", status=2).stderr)
 
 

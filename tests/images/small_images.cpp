@@ -80,50 +80,6 @@ std::string text_of_values() {
   return text;
 }
 
-std::string plist(const std::string& inside) {
-  return "<?xml version=\"1.0\" encoding=\"UTF-8\"?>\n<!DOCTYPE plist>\n<plist version=\"1.0\">\n<dict>" + inside +
-         "</dict>\n</plist>\n";
-}
-
-std::string entry(const std::string& key, const std::string& value) {
-  return "<key>" + key + "</key>" + value;
-}
-
-std::string inv3() {
-  const std::string matrix = entry("matrix", "<dict>" + entry("filename", "<string>matrix.dat</string>") +
-                                                 entry("dtype", "<string>int16</string>") +
-                                                 entry("shape",
-                                                       "<array><integer>3</integer><integer>4</integer><integer>5"
-                                                       "</integer></array>") +
-                                                 "</dict>");
-  const std::string main =
-      plist(matrix + entry("spacing", "<array><real>0.5</real><real>0.75</real><real>2</real></array>") +
-            entry("masks", "<dict>" + entry("0", "<string>mask_0.plist</string>") + "</dict>"));
-  const std::string mask =
-      plist(entry("name", "<string>bone &amp; teeth</string>") + entry("visible", "<true/>") +
-            entry("mask_file", "<string>mask_0.dat</string>") +
-            entry("mask_shape", "<array><integer>4</integer><integer>5</integer><integer>6</integer></array>"));
-  std::string flags(6 * 5 * 4, '\0');
-  // Voxels 0 0 0 and 4 3 2, and a flag, which is none.
-  flags[1 + 6 * (1 + 5 * 1)] = '\xff';
-  flags[5 + 6 * (4 + 5 * 3)] = '\xfe';
-  flags[0] = '\xff';
-  flags[2 + 6 * (1 + 5 * 1)] = '\x01';
-  return tar({{"tmp/", ""},
-              {"tmp/matrix.dat", raw(sample_values())},
-              {"tmp/main.plist", main},
-              {"tmp/mask_0.plist", mask},
-              {"tmp/mask_0.dat", flags}});
-}
-
-std::string inr() {
-  std::string head =
-      "#INRIMAGE-4#{\nXDIM=5\nYDIM=4\nZDIM=3\nVDIM=1\nTYPE=signed fixed\nPIXSIZE=16 bits\nSCALE=2**0\nCPU=decm\n"
-      "VX=0.5\nVY=0.75\nVZ=2\n";
-  head.resize(252, '\n');
-  return head + "##}\n" + raw(sample_values());
-}
-
 }  // namespace
 
 std::vector<std::int16_t> sample_values() {
@@ -144,19 +100,6 @@ std::string gzip(const std::string& bytes) {
 }
 std::string zlib(const std::string& bytes) {
   return deflated(bytes, 15);
-}
-
-std::string tar(const std::vector<std::pair<std::string, std::string>>& files) {
-  std::string out;
-  for (const auto& [name, bytes] : files) {
-    std::string head(512, '\0');
-    std::ranges::copy(name, head.begin());
-    std::ranges::copy(fmt::format("{:011o}", bytes.size()), head.begin() + 124);
-    head[156] = name.ends_with('/') ? '5' : '0';
-    std::ranges::copy(std::string_view("ustar"), head.begin() + 257);
-    out += head + bytes + std::string((512 - bytes.size() % 512) % 512, '\0');
-  }
-  return out + std::string(1024, '\0');
 }
 
 std::string Nifti::header() const {
@@ -263,10 +206,6 @@ std::vector<SmallImage> sheared_images() {
        " \"directions\": [[-0.5, 0, 0], [0, 0.75, 0.25], [0, 0.5, 2]], \"endian\": \"big\", \"offset\": 3}",
        {{"r.raw", "abc" + big}}});
   return all;
-}
-
-std::vector<SmallImage> straight_images() {
-  return {{"a.inr", inr()}, {"a.inr.gz", gzip(inr())}, {"a.inv3", gzip(inv3())}, {"b.inv3", inv3()}};
 }
 
 Image read_small(const SmallImage& file, ImageChoice choice) {

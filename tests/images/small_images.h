@@ -28,8 +28,6 @@ std::vector<std::int16_t> sample_values();
 
 /// The sample in every kind of file that can hold it, its grid as it is.
 std::vector<SmallImage> sheared_images();
-/// The same numbers on a grid with axes along x, y and z, for kinds that know no others: INR and InVesalius.
-std::vector<SmallImage> straight_images();
 
 Image read_small(const SmallImage& file, ImageChoice choice = {});
 
@@ -71,8 +69,6 @@ DicomSlice dicom_slice(std::size_t k);
 
 std::string gzip(const std::string& bytes);
 std::string zlib(const std::string& bytes);
-/// A tar of files.
-std::string tar(const std::vector<std::pair<std::string, std::string>>& files);
 
 template <class T>
 std::string raw(const std::vector<T>& values, bool big_endian = false) {

@@ -14,13 +14,12 @@ int main(int count, char** arguments) {
   const auto write = [&](const std::string& name, const std::string& bytes) {
     std::ofstream(folder / name, std::ios::binary) << bytes;
   };
-  for (const auto& files : {sheared_images(), straight_images()})
-    for (const SmallImage& file : files) {
-      std::string bytes = file.bytes;
-      for (const auto& [name, beside] : file.beside)
-        if (bytes.size() == file.bytes.size()) bytes += "\xff\xff\xff\xff" + beside;
-      write(file.name, bytes);
-    }
+  for (const SmallImage& file : sheared_images()) {
+    std::string bytes = file.bytes;
+    for (const auto& [name, beside] : file.beside)
+      if (bytes.size() == file.bytes.size()) bytes += "\xff\xff\xff\xff" + beside;
+    write(file.name, bytes);
+  }
   using Syntax = DicomSlice::Syntax;
   for (const auto& [syntax, name] : {std::pair{Syntax::kImplicit, "implicit"},
                                      {Syntax::kExplicit, "explicit"},

@@ -169,25 +169,6 @@ class Mpirun(unittest.TestCase):
         self.assertNotEqual(run.returncode, 0)
         self.nothing_left()
 
-    def test_a_killed_run_goes_on_with_other_ranks(self):
-        options, kept = ["--elements", "60000"], self.dir / "kept"
-        self.mesh(1, *options)
-        whole = self.out.read_bytes()
-        self.out.unlink()
-        run = subprocess.Popen([*LAUNCH, "-n", "3", OCTAFRONT, "mesh", str(BRACKET), "-o", str(self.out), *options,
-                                "--checkpoint", str(kept)], stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL)
-        while run.poll() is None and not any("volume" in p.name for p in kept.glob("*.octafront")):
-            time.sleep(0.01)
-        listed = subprocess.run(["ps", "-o", "pid=", "--ppid", str(run.pid)], capture_output=True, text=True).stdout
-        for pid in listed.split()[-1:]:
-            os.kill(int(pid), signal.SIGKILL)
-        run.wait(timeout=60)
-        for ranks in (2, 1):
-            self.out.unlink(missing_ok=True)
-            self.mesh(ranks, *options, "--resume", kept)
-            self.assertEqual(self.out.read_bytes(), whole)
-        self.assertIn("other options", self.mesh(2, "--size", "3", "--resume", kept, check=3).stderr)
-
     def test_no_memory_on_one_rank_is_one_message(self):
         limited = ["sh", "-c", 'ulimit -v $1; shift; exec "$@"', "sh", "500000"]
         command = [OCTAFRONT, "mesh", BRACKET, "-o", self.out, "--elements", "8e6", "--threads", "1"]

@@ -1,6 +1,5 @@
 #include "base/core/parallel.h"
 
-#include "base/core/forecast.h"
 #include "base/core/thread_limit.h"
 
 #include <oneapi/tbb/enumerable_thread_specific.h>
@@ -53,19 +52,19 @@ class Ordering {
 };
 
 /// TBB may divide a range down to single indices; so many parts show whether they are even.
-constexpr std::size_t kPartsOfForecast = 256;
+constexpr std::size_t kPartsOfHook = 256;
 
-const bool kForecast = forecast_threads() > 0;
+const ParallelHook* the_hook = nullptr;
 
-void forecast_ranges(std::size_t n, Split split, FunctionRef<void(std::size_t begin, std::size_t end)> body) {
-  const std::size_t parts = split == Split::kSingly ? n : std::min(n, kPartsOfForecast);
-  if (parts > 0) forecast_region(parts, [&](std::size_t k) { body(n * k / parts, n * (k + 1) / parts); });
+void hooked_ranges(std::size_t n, Split split, FunctionRef<void(std::size_t begin, std::size_t end)> body) {
+  const std::size_t parts = split == Split::kSingly ? n : std::min(n, kPartsOfHook);
+  if (parts > 0) the_hook->run(parts, [&](std::size_t k) { body(n * k / parts, n * (k + 1) / parts); });
 }
 
 }  // namespace
 
 void parallel_ranges(std::size_t n, Split split, FunctionRef<void(std::size_t begin, std::size_t end)> body) {
-  if (kForecast) return forecast_ranges(n, split, body);
+  if (the_hook != nullptr) return hooked_ranges(n, split, body);
   using Range = tbb::blocked_range<std::size_t>;
   Ordering ordering;
   const auto run = [&](const Range& range) { ordering.within([&] { body(range.begin(), range.end()); }); };
@@ -75,20 +74,21 @@ void parallel_ranges(std::size_t n, Split split, FunctionRef<void(std::size_t be
     tbb::parallel_for(Range(0, n), run);
 }
 
+void set_parallel_hook(const ParallelHook* hook) {
+  the_hook = hook;
+}
+
 bool has_threads() {
   return true;
 }
 
 std::size_t thread_count() {
-  if (kForecast) return forecast_threads();
+  if (the_hook != nullptr) return the_hook->threads;
   return tbb::global_control::active_value(tbb::global_control::max_allowed_parallelism);
 }
 
 void parallel_invoke(FunctionRef<void()> a, FunctionRef<void()> b) {
-  if (kForecast) {
-    forecast_region(2, [&](std::size_t k) { k == 0 ? a() : b(); });
-    return;
-  }
+  if (the_hook != nullptr) return the_hook->run(2, [&](std::size_t k) { k == 0 ? a() : b(); });
   Ordering ordering;
   tbb::parallel_invoke([&] { ordering.within(a); }, [&] { ordering.within(b); });
 }

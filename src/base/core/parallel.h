@@ -33,6 +33,15 @@ void parallel_for(std::size_t n, const Body& body, Split split = Split::kAdaptiv
 /// How many threads may work at a time, the caller included.
 std::size_t thread_count();
 
+/// Does the tasks of all calls in its own way, to measure them; work then believes in `threads`.
+struct ParallelHook {
+  std::size_t threads;
+  void (*run)(std::size_t tasks, FunctionRef<void(std::size_t)> task);
+};
+
+/// Null: nobody does. Set before any work begins.
+void set_parallel_hook(const ParallelHook* hook);
+
 /// Both, at the same time where there is a thread for it.
 void parallel_invoke(FunctionRef<void()> a, FunctionRef<void()> b);
 

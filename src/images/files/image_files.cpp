@@ -33,13 +33,8 @@ Image read_raw_by_header(const Reading& reading) {
   return read_raw(reading);
 }
 
-constexpr std::array kKinds{Kind{is_inr, read_inr},
-                            Kind{is_nrrd, read_nrrd},
-                            Kind{is_dicom, read_dicom},
-                            Kind{is_nifti, read_nifti},
-                            Kind{is_invesalius, read_invesalius},
-                            Kind{is_meta, read_meta},
-                            Kind{is_raw_header, read_raw_by_header}};
+constexpr std::array kKinds{Kind{is_nrrd, read_nrrd}, Kind{is_dicom, read_dicom}, Kind{is_nifti, read_nifti},
+                            Kind{is_meta, read_meta}, Kind{is_raw_header, read_raw_by_header}};
 
 /// The first bytes of a file, unpacked if they are compressed: as many as come before what is damaged, which readers
 /// will complain about.
@@ -83,8 +78,8 @@ std::string first_bytes(const fs::path& file) {
 }
 
 /// Endings of files that say themselves what they hold; `.img` may be raw.
-constexpr std::array kOwnEndings{".nii", ".hdr", ".nrrd", ".nhdr", ".mha",  ".mhd",  ".inr", ".inv3",
-                                 ".dcm", ".stp", ".step", ".igs",  ".iges", ".brep", ".json"};
+constexpr std::array kOwnEndings{".nii", ".hdr",  ".nrrd", ".nhdr", ".mha",  ".mhd", ".dcm",
+                                 ".stp", ".step", ".igs",  ".iges", ".brep", ".json"};
 
 bool claims_a_kind(const fs::path& file) {
   const fs::path bare = file.extension() == ".gz" ? file.stem() : file;
@@ -154,10 +149,10 @@ Image read_folder(const std::string& folder, const ImageChoice& choice, const Ru
 Image read_image_bytes(const Reading& reading) {
   const std::string head = head_of(reading.input);
   if (const Kind* kind = kind_of(head)) return kind->read(reading);
-  reading.input.fail(fmt::format(
-      "is no image of a kind that is known here (NIfTI, NRRD, MetaImage, INR, InVesalius, DICOM, or raw voxels with a "
-      "JSON file beside them); it begins with {}",
-      io::in_quotes(head.substr(0, 24))));
+  reading.input.fail(
+      fmt::format("is no image of a kind that is known here (NIfTI, NRRD, MetaImage, DICOM, or raw voxels with a "
+                  "JSON file beside them); it begins with {}",
+                  io::in_quotes(head.substr(0, 24))));
 }
 
 std::uint32_t chosen_series(const Reading& reading, std::uint64_t count, const std::string& what) {

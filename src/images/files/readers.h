@@ -31,8 +31,6 @@ struct Reading {
 Image read_nifti(const Reading& reading);
 Image read_nrrd(const Reading& reading);
 Image read_meta(const Reading& reading);
-Image read_inr(const Reading& reading);
-Image read_invesalius(const Reading& reading);
 /// `input` is the JSON that says what the bytes of `data` mean; empty: the file that it names.
 Image read_raw(const Reading& reading, const std::string& data = {});
 
@@ -40,8 +38,6 @@ Image read_raw(const Reading& reading, const std::string& data = {});
 bool is_nifti(std::string_view head);
 bool is_nrrd(std::string_view head);
 bool is_meta(std::string_view head);
-bool is_inr(std::string_view head);
-bool is_invesalius(std::string_view head);
 bool is_raw_header(std::string_view head);
 
 /// By content, or else by the ending of the name.

@@ -11,7 +11,6 @@
 #include "pipeline/inside/fins.h"
 #include "pipeline/stages/adapting.h"
 #include "pipeline/stages/agreement.h"
-#include "pipeline/stages/checkpoint.h"
 #include "pipeline/stages/kept_shape.h"
 #include "pipeline/stages/kept_volumes.h"
 #include "pipeline/stages/measure.h"
@@ -79,15 +78,6 @@ void split(TetMesh& mesh, Run& run) {
   check_result(mesh, nullptr, run);
 }
 
-/// improve_in_shape(), or what is kept of it.
-void improve_or_read(const Prepared& input, Filled& filled, Run& run) {
-  ImprovedMesh improved = run.checkpoint->kept<ImprovedMesh>("improved", [&] {
-    improve_in_shape(input, filled, run);
-    return ImprovedMesh{std::move(filled.mesh), std::move(filled.boundary)};
-  });
-  filled.mesh = std::move(improved.mesh), filled.boundary = std::move(improved.boundary);
-}
-
 /// Whether what follows improvement looks at elements of all ranks together.
 bool wants_all(const Domain& domain, const Prepared& input, const Filled& filled, const Run& run, const Fins* fins) {
   const Options& options = run.options;
@@ -107,8 +97,7 @@ std::optional<NarrowPlace> narrow_place_of(const Prepared& input, const Filled& 
 }
 
 /// `fins`: of the domain's lines and points, which it has as sheets; null: it has none.
-Result generate_once(const Domain& domain, const Options& asked, const RunContext& context, Fins* fins,
-                     const Checkpoints& checkpoints) {
+Result generate_once(const Domain& domain, const Options& asked, const RunContext& context, Fins* fins) {
   const Options options = suited(domain, asked);
   Run run(options, context);
   refuse_for_ranks(options, context);
@@ -119,12 +108,10 @@ Result generate_once(const Domain& domain, const Options& asked, const RunContex
   const SizeField sizes = choose_sizes(input, domain, asked, run);
   require_expected_elements(run.report.expected_tets);
   agree_on(sizes, input.surface.mesh().points, "size field", context);
-  Checkpoint checkpoint(checkpoints, input, sizes, run);
-  run.checkpoint = &checkpoint;
   Filled filled = fill_to_target(input, sizes, run);
   require_elements(static_cast<double>(filled.mesh.tets.size()), "the mesh");
   agree_on(filled, "mesh as it was filled", context);
-  improve_or_read(input, filled, run);
+  improve_in_shape(input, filled, run);
   agree_on(filled, "improved mesh", context);
   if (wants_all(domain, input, filled, run, fins)) make_whole(filled, run);
   if (!options.layers.outside) add_layers(input, filled, run);
@@ -183,9 +170,8 @@ Domain with_sheets(const Domain& domain, const Fins& fins, const RunContext& con
 }
 
 /// generate() of a domain without lines and points, or with fins for them.
-Result generate_in(const Domain& domain, const Options& asked, const RunContext& context, Fins* fins,
-                   const Checkpoints& checkpoints) {
-  const auto make = [&](const Domain& of) { return generate_once(of, asked, context, fins, checkpoints); };
+Result generate_in(const Domain& domain, const Options& asked, const RunContext& context, Fins* fins) {
+  const auto make = [&](const Domain& of) { return generate_once(of, asked, context, fins); };
   const std::optional<double>& percent = asked.surface.volume_tolerance;
   return percent ? with_volumes_within(*percent, domain, make) : make(domain);
 }
@@ -207,31 +193,24 @@ std::vector<PoorElement> worst_elements(const Result& result, std::size_t count,
   return worst;
 }
 
-Result generate(const Domain& domain, const Options& asked, const RunContext& context) {
-  return generate_with({}, domain, asked, context);
-}
-
 namespace {
 
-/// generate_with(), whatever is required of the mesh.
-Result generate_freely(const Checkpoints& checkpoints, const Domain& domain, const Options& asked,
-                       const RunContext& context) {
-  if (domain.wires.empty() && domain.points.empty()) return generate_in(domain, asked, context, nullptr, checkpoints);
+/// generate(), whatever is required of the mesh.
+Result generate_freely(const Domain& domain, const Options& asked, const RunContext& context) {
+  if (domain.wires.empty() && domain.points.empty()) return generate_in(domain, asked, context, nullptr);
   if (!traits_of(asked.method).fills_complexes)
     throw OptionError("this method has no lines and points inside: choose method octree-aft");
   Fins fins = fins_of(domain, asked, context);
   Options options = asked;
   if (!options.size.field)
     options.size.regions.insert(options.size.regions.end(), fins.narrow().begin(), fins.narrow().end());
-  return generate_in(with_sheets(domain, fins, context), options, context, &fins, checkpoints);
+  return generate_in(with_sheets(domain, fins, context), options, context, &fins);
 }
 
 }  // namespace
 
-Result generate_with(const Checkpoints& checkpoints, const Domain& domain, const Options& asked,
-                     const RunContext& context) {
-  open_checkpoint(checkpoints, domain, asked, context);
-  Result made = generate_freely(checkpoints, domain, asked, context);
+Result generate(const Domain& domain, const Options& asked, const RunContext& context) {
+  Result made = generate_freely(domain, asked, context);
   require_of(made.mesh, longest_edge(made.mesh, made.sizes, asked.require), asked.require, made.report);
   return made;
 }

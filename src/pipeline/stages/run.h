@@ -5,7 +5,6 @@
 #include <octafront/run_context.h>
 
 #include "base/comm/comm.h"
-#include "base/core/forecast.h"
 #include "base/core/stage.h"
 #include "base/core/stage_timer.h"
 #include "base/core/thread_limit.h"
@@ -14,8 +13,6 @@
 #include <utility>
 
 namespace octafront {
-
-class Checkpoint;
 
 /// Enters into the report what the ranks have said to each other until its end, if there are several.
 class StageUse {
@@ -48,7 +45,6 @@ class Run {
     StageReport& entry = report.stages.emplace_back();
     entry.name = name;
     const StageTimer timer(entry);
-    const StageForecast forecast(entry);
     const StageUse use(context_, entry);
     return comm().attempt(name, Comm::Telling::kNamesRank, [&] {
       context_.check();
@@ -58,9 +54,6 @@ class Run {
   }
 
   Comm comm() const { return Comm(context_.ranks); }
-  /// What earlier runs have kept of the stages that are yet to come; null: nothing is.
-  Checkpoint* checkpoint = nullptr;
-
   const RunContext& context() const { return context_; }
   /// The report, with the sums over its stages and the peak of memory: the end of the run.
   Report close();

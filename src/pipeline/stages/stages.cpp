@@ -17,7 +17,6 @@
 #include "improve/curved/curved.h"
 #include "improve/schedule/raise_flat.h"
 #include "improve/schedule/schedule.h"
-#include "pipeline/stages/checkpoint.h"
 #include "pipeline/stages/follow_boundary.h"
 #include "pipeline/stages/kept_shape.h"
 #include "pipeline/stages/kept_volumes.h"
@@ -43,12 +42,6 @@
 namespace octafront {
 
 namespace {
-
-/// make(), or what is kept of it.
-template <class Result, class Make>
-Result kept(Run& run, const char* name, const Make& make) {
-  return run.checkpoint != nullptr ? run.checkpoint->kept<Result>(name, make) : make();
-}
 
 // Doubles that lie too few steps apart leave no room for vertices between them.
 constexpr double kLeastExtent = 1e-12;  // diagonal over the largest coordinate
@@ -205,8 +198,7 @@ void ease_boundary(const improve::BoundaryInput& on, Filled& filled, const Optio
 bool may_share(const Prepared& input, const Run& run) {
   const bool is_improved = run.options.improve.level != ImproveOptions::Level::kOff;
   return !run.comm().alone() && traits_of(run.options.method).shares_tets && is_improved &&
-         !is_complex(input.surface.mesh()) && !input.cell.is_periodic() && run.options.layers.count == 0 &&
-         (run.checkpoint == nullptr || !run.checkpoint->keeps());
+         !is_complex(input.surface.mesh()) && !input.cell.is_periodic() && run.options.layers.count == 0;
 }
 
 /// Vertices inside periodic faces, which improvement leaves alone, with their copies.
@@ -411,37 +403,35 @@ SizeField choose_sizes(const Prepared& input, Run& run) {
 
 Remeshed triangulate(const Prepared& input, const SizeField& sizes, Run& run) {
   if (keeps_surface(run.options)) return input_as_it_is(input.surface, sizes);
-  return kept<Remeshed>(run, "surface", [&] {
-    return run.stage("surface front", [&](const Stage& stage) {
-      const SurfaceOptions surface = true_to_input(input.surface.mesh(), run.options);
-      const double slack = surface.max_deviation == run.options.surface.max_deviation ? 1 : kAutomaticSlack;
-      const double budget = budget_of(input.surface.mesh(), run.options);
-      const SizeOptions& size = run.options.size;
-      const bool is_coarse = input.geometry != nullptr && has_automatic_sizes(run.options);
-      const FrontLimits limits{.slack = slack,
-                               .budget = budget,
-                               .least = size.min_size.value_or(0),
-                               .narrowest_strip = kNarrowOfGiven * size.size.value_or(0),
-                               .rise = size.gradation ? 0
-                                       : is_coarse    ? kRiseFromStripsOfGeometry
-                                                      : kRiseFromStrips,
-                               .per_strip = is_coarse ? kPerStripOfGeometry : 0};
-      Remeshed remeshed = remeshed_in_shape(
-          input, sizes, run, stage,
-          [&](const SizeField& by) {
-            Remeshed made = remesh_surface(input.surface, by, surface, stage, input.kept_bound(), limits, input.cell);
-            keep_surface_volumes(input, made, run, stage);
-            return made;
-          },
-          budget);
-      stage.count("triangles", static_cast<double>(remeshed.surface.triangles.size()));
-      // Strips between lines and the bounds on deviation have made sizes smaller since the first prediction.
-      run.report.expected_tets =
-          traits_of(run.options.method).tets_per_expected * expected_tets_within(remeshed.sizes, remeshed.surface) +
-          expected_layer_tets(remeshed.surface, run.options.layers) +
-          expected_shell_tets(remeshed, run.options.volume.shell);
-      return remeshed;
-    });
+  return run.stage("surface front", [&](const Stage& stage) {
+    const SurfaceOptions surface = true_to_input(input.surface.mesh(), run.options);
+    const double slack = surface.max_deviation == run.options.surface.max_deviation ? 1 : kAutomaticSlack;
+    const double budget = budget_of(input.surface.mesh(), run.options);
+    const SizeOptions& size = run.options.size;
+    const bool is_coarse = input.geometry != nullptr && has_automatic_sizes(run.options);
+    const FrontLimits limits{.slack = slack,
+                             .budget = budget,
+                             .least = size.min_size.value_or(0),
+                             .narrowest_strip = kNarrowOfGiven * size.size.value_or(0),
+                             .rise = size.gradation ? 0
+                                     : is_coarse    ? kRiseFromStripsOfGeometry
+                                                    : kRiseFromStrips,
+                             .per_strip = is_coarse ? kPerStripOfGeometry : 0};
+    Remeshed remeshed = remeshed_in_shape(
+        input, sizes, run, stage,
+        [&](const SizeField& by) {
+          Remeshed made = remesh_surface(input.surface, by, surface, stage, input.kept_bound(), limits, input.cell);
+          keep_surface_volumes(input, made, run, stage);
+          return made;
+        },
+        budget);
+    stage.count("triangles", static_cast<double>(remeshed.surface.triangles.size()));
+    // Strips between lines and the bounds on deviation have made sizes smaller since the first prediction.
+    run.report.expected_tets =
+        traits_of(run.options.method).tets_per_expected * expected_tets_within(remeshed.sizes, remeshed.surface) +
+        expected_layer_tets(remeshed.surface, run.options.layers) +
+        expected_shell_tets(remeshed, run.options.volume.shell);
+    return remeshed;
   });
 }
 
@@ -468,13 +458,11 @@ Filled fill_surface(const Prepared& input, Remeshed boundary, Run& run) {
   const MethodTraits& method = traits_of(run.options.method);
   std::optional<GrownLayers> layers = grow_layers(input, boundary, run);
   const Tets tets = may_share(input, run) ? Tets::kShare : Tets::kAll;
-  TetMesh mesh = kept<TetMesh>(run, "volume", [&] {
-    return run.stage(method.stage, [&](const Stage& stage) {
-      TetMesh filled = method.fill(boundary, run.options.volume, stage, tets);
-      const std::uint64_t made = tets == Tets::kShare ? count_tets(filled, run.comm()).all : filled.tets.size();
-      stage.count("tets", static_cast<double>(made));
-      return filled;
-    });
+  TetMesh mesh = run.stage(method.stage, [&](const Stage& stage) {
+    TetMesh filled = method.fill(boundary, run.options.volume, stage, tets);
+    const std::uint64_t made = tets == Tets::kShare ? count_tets(filled, run.comm()).all : filled.tets.size();
+    stage.count("tets", static_cast<double>(made));
+    return filled;
   });
   mesh.source.reserve(mesh.boundary.size());
   for (std::size_t t = 0; t < boundary.source.size(); ++t)

@@ -1,8 +1,6 @@
-#include "base/core/forecast.h"
+// What several threads would make of a run, as bench/threads.py measures it.
 
-#include <octafront/report.h>
-
-#include "base/core/parallel.h"
+#include "../../../bench/forecast.h"
 
 #include <stdexcept>
 
@@ -51,16 +49,6 @@ TEST(Forecast, WhatGainsNothingIsSerial) {
 
 TEST(Forecast, WhatATaskThrowsComesOut) {
   EXPECT_THROW(forecast_region(2, [](std::size_t) { throw std::runtime_error("two"); }), std::runtime_error);
-}
-
-TEST(Forecast, IsOffUnlessAskedFor) {
-  if (forecast_threads() > 0) GTEST_SKIP() << "OCTAFRONT_FORECAST is set";
-  StageReport report;
-  {
-    const StageForecast stage(report);
-    parallel_for(100, [](std::size_t) {});
-  }
-  EXPECT_TRUE(report.counters.empty());
 }
 
 }  // namespace

@@ -25,6 +25,29 @@ TEST(Parallel, EveryIndexOnce) {
     }
 }
 
+TEST(Parallel, AHookDoesAllTasksItself) {
+  static std::size_t regions, tasks;
+  regions = tasks = 0;
+  constexpr ParallelHook kHook{7, [](std::size_t n, FunctionRef<void(std::size_t)> task) {
+                                 ++regions, tasks += n;
+                                 for (std::size_t k = 0; k < n; ++k) task(k);
+                               }};
+  set_parallel_hook(&kHook);
+  std::vector<int> calls(10'007);
+  parallel_for(calls.size(), [&](std::size_t i) { ++calls[i]; });
+  parallel_for(
+      3, [&](std::size_t i) { ++calls[i]; }, Split::kSingly);
+  parallel_invoke([&] { ++calls[3]; }, [&] { ++calls[4]; });
+  const std::size_t believed = thread_count();
+  set_parallel_hook(nullptr);
+  EXPECT_EQ(believed, 7);
+  EXPECT_EQ(regions, 3);
+  EXPECT_EQ(tasks, 256 + 3 + 2);
+  EXPECT_EQ(std::count(calls.begin(), calls.begin() + 5, 2), 5);
+  EXPECT_EQ(std::count(calls.begin() + 5, calls.end(), 1), static_cast<std::ptrdiff_t>(calls.size()) - 5);
+  EXPECT_NE(thread_count(), 7);
+}
+
 TEST(Parallel, WhatABodyThrowsComesOut) {
   const auto fail = [](std::size_t i) {
     if (i == 17) throw std::runtime_error("seventeen");

@@ -53,32 +53,6 @@ TEST(ImageReaders, EveryKindGivesTheSameImage) {
   }
 }
 
-TEST(ImageReaders, KindsWithoutDirectionsHaveTheirOwn) {
-  for (const SmallImage& file : testing::straight_images()) {
-    SCOPED_TRACE(file.name);
-    const Image image = read_small(file);
-    const bool is_project = file.name.ends_with(".inv3");
-    EXPECT_EQ(image.grid.size, (std::array<std::uint32_t, 3>{5, 4, 3}));
-    expect_near(image.grid.axes[0], {0.5, 0, 0});
-    // Rows of InVesalius run to the front, and its world is LPS.
-    expect_near(image.grid.axes[1], {0, is_project ? -0.75 : 0.75, 0});
-    expect_near(image.grid.axes[2], {0, 0, 2});
-    expect_values(image, sample_numbers());
-  }
-}
-
-TEST(ImageReaders, MasksOfProjectsAreChosenByNumber) {
-  const SmallImage project = testing::straight_images()[2];
-  const Image image = read_small(project);
-  EXPECT_TRUE(any_contains(image.notes, "2 \"bone & teeth\""));
-  const Image mask = read_small(project, {2});
-  std::vector<double> expected(60, 0);
-  expected[0] = expected[59] = 1;
-  expect_values(mask, expected);
-  EXPECT_EQ(mask.names, (std::vector<LabelName>{{1, "bone & teeth"}}));
-  EXPECT_TRUE(contains(input_error([&] { read_small(project, {3}); }), "number 3"));
-}
-
 Nifti tiny() {
   Nifti n;
   n.dim = {3, 2, 1, 1, 1, 1, 1, 1};
@@ -261,14 +235,9 @@ TEST(BadImages, ErrorsSayWhereAndWhat) {
        {"a.mha", meta + "ElementNumberOfChannels = 3\nElementDataFile = LOCAL\n123"},
        {"line 5", "3 values per voxel"}},
       {"meta shares", {"a.mhd", meta + "ElementDataFile = s%d.raw 1 3 1\n"}, {"3 files for 2 voxels"}},
-      {"inr end", {"a.inr", "#INRIMAGE-4#{\nXDIM=5\n" + std::string(300, '\n')}, {"INR header"}},
-      {"inr voxels",
-       {"a.inr", testing::straight_images()[0].bytes.substr(0, 300)},
-       {"byte 256", "120 bytes", "only 44"}},
       {"json", {"a.json", "{\"size\": [1,1,1], \"type\": \"int16\","}, {"byte", "JSON"}},
       {"json key", {"a.json", "{\"size\": [1,1,1], \"type\": \"int16\", \"spacings\": 3}"}, {"spacings"}},
       {"json type", {"a.json", "{\"size\": [1,1,1], \"type\": \"int7\"}", {{"a.raw", "12"}}}, {"\"type\""}},
-      {"no project", {"a.inv3", testing::tar({{"a.txt", "abc"}})}, {"main.plist"}},
       {"prose", {"a.txt", "Dear reader, this is no image."}, {"no image of a kind", "Dear reader"}},
   };
   for (const BadImage& bad : files) {
@@ -279,40 +248,38 @@ TEST(BadImages, ErrorsSayWhereAndWhat) {
 }
 
 TEST(BadImages, CutOffAnywhereTheyAreRefused) {
-  for (const auto& files : {testing::sheared_images(), testing::straight_images()})
-    for (const SmallImage& file : files) {
-      SCOPED_TRACE(file.name);
-      const bool is_text = file.name.starts_with("d.");
-      // Lists of files lack one of them when they are cut off in their last line; the JSON has all in its first two.
-      for (std::size_t n = 1; n + (is_text ? 4 : 1) < file.bytes.size(); n += 1 + n / 40) {
-        if (file.name.ends_with(".inv3") || file.name.ends_with("hdr") || file.name.ends_with(".json")) continue;
-        SmallImage cut = file;
-        cut.bytes.resize(n);
-        try {
-          read_small(cut);
-          // What compression pads with may be missing.
-          if (file.name.find("gz") == std::string::npos && file.name != "c.nrrd" && file.name != "c.mha" &&
-              cut.beside.empty())
-            ADD_FAILURE() << "read without its end: " << n << " of " << file.bytes.size();
-        } catch (const InputError&) {
-        }
+  for (const SmallImage& file : testing::sheared_images()) {
+    SCOPED_TRACE(file.name);
+    const bool is_text = file.name.starts_with("d.");
+    // Lists of files lack one of them when they are cut off in their last line; the JSON has all in its first two.
+    for (std::size_t n = 1; n + (is_text ? 4 : 1) < file.bytes.size(); n += 1 + n / 40) {
+      if (file.name.ends_with("hdr") || file.name.ends_with(".json")) continue;
+      SmallImage cut = file;
+      cut.bytes.resize(n);
+      try {
+        read_small(cut);
+        // What compression pads with may be missing.
+        if (file.name.find("gz") == std::string::npos && file.name != "c.nrrd" && file.name != "c.mha" &&
+            cut.beside.empty())
+          ADD_FAILURE() << "read without its end: " << n << " of " << file.bytes.size();
+      } catch (const InputError&) {
       }
     }
+  }
 }
 
 TEST(BadImages, AnyByteMayChange) {
-  for (const auto& files : {testing::sheared_images(), testing::straight_images()})
-    for (const SmallImage& file : files)
-      for (std::size_t n = 0; n < file.bytes.size(); n += 1 + file.bytes.size() / 300)
-        for (const char c : {'\0', '\xff', '9'}) {
-          SmallImage changed = file;
-          changed.bytes[n] = c;
-          try {
-            const Image image = read_small(changed);
-            std::visit([&](const auto& values) { EXPECT_EQ(values.size(), image.grid.voxels()); }, image.values);
-          } catch (const InputError&) {
-          }
+  for (const SmallImage& file : testing::sheared_images())
+    for (std::size_t n = 0; n < file.bytes.size(); n += 1 + file.bytes.size() / 300)
+      for (const char c : {'\0', '\xff', '9'}) {
+        SmallImage changed = file;
+        changed.bytes[n] = c;
+        try {
+          const Image image = read_small(changed);
+          std::visit([&](const auto& values) { EXPECT_EQ(values.size(), image.grid.voxels()); }, image.values);
+        } catch (const InputError&) {
         }
+      }
 }
 
 }  // namespace

@@ -26,7 +26,7 @@ std::string volume(const std::string& name) {
 class Volumes : public ::testing::Test {
  protected:
   void SetUp() override {
-    if (!fs::exists(volume("Cranium.inv3"))) GTEST_SKIP() << "scripts/get-volumes.sh fetches the volumes";
+    if (!fs::exists(volume("Cranium.nrrd"))) GTEST_SKIP() << "scripts/get-volumes.sh fetches the volumes";
     folder_ = fs::temp_directory_path() / fmt::format("octafront-volumes-{}", ::getpid());
     fs::create_directories(folder_);
   }
@@ -49,7 +49,7 @@ std::vector<testing::DicomSlice> slices_of(const Image& image, double tilt) {
     s.uid = fmt::format("1.2.3.4.{}", k);
     s.instance = static_cast<int>(nk - k);
     s.size = {static_cast<std::uint16_t>(ni), static_cast<std::uint16_t>(nj)};
-    // Rows run to the back, as scanners write them: the last row of InVesalius first.
+    // Rows run to the back, as scanners write them: the last row of the project first.
     s.at = {0, -length(image.grid.axes[1]) * (nj - 1.0), length(image.grid.axes[2]) * k};
     s.directions = {1, 0, 0, 0, std::cos(angle), std::sin(angle)};
     s.spacing = {length(image.grid.axes[1]), length(image.grid.axes[0])};
@@ -72,10 +72,10 @@ void write(const fs::path& folder, std::vector<testing::DicomSlice> slices) {
 }
 
 TEST_F(Volumes, CraniumIsWhatItsProjectSays) {
-  const Image image = read_image(volume("Cranium.inv3"));
+  const Image image = read_image(volume("Cranium.nrrd"));
   EXPECT_EQ(image.grid.size, (std::array<std::uint32_t, 3>{256, 256, 108}));
   const auto& values = std::get<std::vector<std::int16_t>>(image.values);
-  const Image mask = read_image(volume("Cranium.inv3"), {2});
+  const Image mask = read_image(volume("Cranium-mask.nrrd"));
   const auto& inside = std::get<std::vector<std::uint8_t>>(mask.values);
   std::size_t voxels = 0;
   for (std::size_t v = 0; v < values.size(); ++v) {
@@ -88,7 +88,7 @@ TEST_F(Volumes, CraniumIsWhatItsProjectSays) {
 }
 
 TEST_F(Volumes, CraniumAsASeriesOfDicomIsTheSame) {
-  const Image image = read_image(volume("Cranium.inv3"));
+  const Image image = read_image(volume("Cranium.nrrd"));
   write(folder_ / "series", slices_of(image, 0));
   const Image series = read_image((folder_ / "series").string());
   // Rows run the other way, so the same voxel has another number.
@@ -104,7 +104,7 @@ TEST_F(Volumes, CraniumAsASeriesOfDicomIsTheSame) {
 }
 
 TEST_F(Volumes, AsScannersReallyWriteThem) {
-  const Image image = cropped(read_image(volume("Cranium.inv3")), {{100, 60, 0}, {140, 120, 20}});
+  const Image image = cropped(read_image(volume("Cranium.nrrd")), {{100, 60, 0}, {140, 120, 20}});
   std::vector<testing::DicomSlice> tilted = slices_of(image, 15);
   const Image sheared = [&] {
     write(folder_ / "tilted", tilted);
@@ -138,10 +138,10 @@ TEST_F(Volumes, SegmentationsAreToldFromGreyImages) {
   for (const char* name :
        {"AICHAmc.nii.gz", "HarvardOxford-cort-maxprob-thr0-1mm.nii.gz", "JHU-WhiteMatter-labels-1mm.nii.gz",
         "JHU-WhiteMatter-labels-2mm.nii.gz", "aal.nii.gz", "brodmann.nii.gz", "inia19-NeuroMaps.nii.gz",
-        "jhu189.nii.gz", "natbrainlab.nii.gz", "KmeansTest_T1KmeansPrelimSegmentation.nii.gz", "liver.inr.gz"})
+        "jhu189.nii.gz", "natbrainlab.nii.gz", "KmeansTest_T1KmeansPrelimSegmentation.nii.gz", "liver.nrrd"})
     EXPECT_TRUE(looks_like_labels(read_image(volume(name)))) << name;
   for (const char* name : {"ch2.nii.gz", "ch2bet.nii.gz", "ch2better.nii.gz", "inia19-t1-brain.nii.gz",
-                           "KmeansTest_T1UCharRaw.nii.gz", "skull_2.9.inr", "BrainProtonDensity3Slices.mha"})
+                           "KmeansTest_T1UCharRaw.nii.gz", "skull_2.9.nrrd", "BrainProtonDensity3Slices.mha"})
     EXPECT_FALSE(looks_like_labels(read_image(volume(name)))) << name;
 }
 

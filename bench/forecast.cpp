@@ -1,18 +1,10 @@
-#include "base/core/forecast.h"
+#include "forecast.h"
 
 #include <algorithm>
-#include <cstdio>
-#include <cstdlib>
+#include <ctime>
 #include <functional>
 #include <queue>
-#include <string>
 #include <vector>
-
-#ifdef _WIN32
-#include "base/core/files_of_windows.h"
-#else
-#include <ctime>
-#endif
 
 namespace octafront {
 
@@ -47,16 +39,6 @@ double seconds_with(std::size_t threads, const std::vector<double>& tasks) {
   return last;
 }
 
-/// Of all that the thread did that ends the process, stages or not, as an object of JSON.
-void tell_of_process() {
-  const double whole = thread_cpu_seconds() - of_thread.counting, serial = whole - of_thread.parallel;
-  std::fprintf(stderr, "{\"seconds\": %.6f, \"serial seconds\": %.6f, \"regions\": %llu", whole, serial,
-               static_cast<unsigned long long>(of_thread.regions));
-  for (std::size_t k = 0; k < Forecast::kThreads.size(); ++k)
-    std::fprintf(stderr, ", \"seconds with %zu threads\": %.6f", Forecast::kThreads[k], serial + of_thread.with[k]);
-  std::fprintf(stderr, "}\n");
-}
-
 }  // namespace
 
 void Forecast::add(const Forecast& other) {
@@ -64,27 +46,10 @@ void Forecast::add(const Forecast& other) {
   for (std::size_t k = 0; k < with.size(); ++k) with[k] += other.with[k];
 }
 
-std::size_t forecast_threads() {
-  static const std::size_t threads = [] {
-    const char* const asked = std::getenv("OCTAFRONT_FORECAST");
-    const std::size_t number = asked == nullptr ? 0 : std::strtoul(asked, nullptr, 10);
-    if (number > 0) std::atexit(tell_of_process);
-    return number;
-  }();
-  return threads;
-}
-
 double thread_cpu_seconds() {
-#ifdef _WIN32
-  FILETIME ignored{}, system{}, user{};
-  GetThreadTimes(GetCurrentThread(), &ignored, &ignored, &system, &user);
-  const auto seconds = [](FILETIME t) { return 1e-7 * (0x1p32 * t.dwHighDateTime + t.dwLowDateTime); };
-  return seconds(user) + seconds(system);
-#else
   timespec now{};
   clock_gettime(CLOCK_THREAD_CPUTIME_ID, &now);
   return static_cast<double>(now.tv_sec) + 1e-9 * static_cast<double>(now.tv_nsec);
-#endif
 }
 
 Forecast forecast_region(std::size_t tasks, FunctionRef<void(std::size_t)> task) {
@@ -119,22 +84,8 @@ Forecast forecast_region(std::size_t tasks, FunctionRef<void(std::size_t)> task)
   return region;
 }
 
-StageForecast::StageForecast(StageReport& report) : report_(report) {
-  if (forecast_threads() == 0) return;
-  before_ = of_thread;
-  start_ = thread_cpu_seconds();
-}
-
-StageForecast::~StageForecast() {
-  if (forecast_threads() == 0) return;
-  const double counting = of_thread.counting - before_.counting;
-  const double whole = thread_cpu_seconds() - start_ - counting, parallel = of_thread.parallel - before_.parallel;
-  report_.count("forecast: seconds", whole);
-  report_.count("forecast: serial seconds", whole - parallel);
-  report_.count("forecast: regions", static_cast<double>(of_thread.regions - before_.regions));
-  for (std::size_t k = 0; k < Forecast::kThreads.size(); ++k)
-    report_.count("forecast: seconds with " + std::to_string(Forecast::kThreads[k]) + " threads",
-                  whole - parallel + of_thread.with[k] - before_.with[k]);
+const Forecast& forecast_so_far() {
+  return of_thread;
 }
 
 }  // namespace octafront

@@ -1,11 +1,8 @@
 #pragma once
 
 // What several threads would make of a run, found out by one: each task of parallel.h is timed, and the tasks of a
-// region (a call of parallel.h) are given in thought to 2, 16 and 64 threads. The rest of a stage is serial. For
-// measurements, on any machine: OCTAFRONT_FORECAST=16 in the environment switches it on, and code that asks how many
-// threads there are is told 16. Without it a region costs one look at a bool.
-
-#include <octafront/report.h>
+// region (a call of parallel.h) are given in thought to 2, 16 and 64 threads. The rest is serial. For measurements, on
+// any machine.
 
 #include "base/core/function_ref.h"
 
@@ -27,28 +24,13 @@ struct Forecast {
   void add(const Forecast& other);
 };
 
-/// How many threads a run is to believe in; 0: nothing is counted.
-std::size_t forecast_threads();
-
 /// CPU seconds that the calling thread has used so far.
 double thread_cpu_seconds();
 
+/// What the calling thread has counted so far: in the task that it does, or in all.
+const Forecast& forecast_so_far();
+
 /// Does task(0) ... task(tasks - 1) in turn, as one region, and says what was counted.
 Forecast forecast_region(std::size_t tasks, FunctionRef<void(std::size_t)> task);
-
-/// Between construction and destruction: enters into a stage's counters what is serial in it, and how long it would
-/// take.
-class StageForecast {
- public:
-  explicit StageForecast(StageReport& report);
-  ~StageForecast();
-  StageForecast(const StageForecast&) = delete;
-  StageForecast& operator=(const StageForecast&) = delete;
-
- private:
-  StageReport& report_;
-  Forecast before_;
-  double start_ = 0;
-};
 
 }  // namespace octafront
