@@ -65,7 +65,8 @@ class Docs:
             self.fault(page, f"leads to {link}, and there is no such heading")
 
     def check_links(self):
-        for page in [*self.pages, *(self.root / name for name in ("README.md", "CONTRIBUTING.md", "ARCHITECTURE.md"))]:
+        beside = [self.root / name for name in ("README.md", "CONTRIBUTING.md", "ARCHITECTURE.md")]
+        for page in [*self.pages, *beside, *sorted(self.root.glob("src/*/README.md"))]:
             text = FENCE.sub("", page.read_text())
             for link in LINK.findall(text):
                 if not re.match(r"\w+:", link):
@@ -86,6 +87,7 @@ def self_test():
         "README.md": "![a](docs/a.png) [b](docs/b.png) [there](https://there)\n```\n[c](c.png)\n```\n",
         "CONTRIBUTING.md": "`docs/README.md`, `scripts/gone.sh --all`, `build/a`\n",
         "ARCHITECTURE.md": "[here](#a-head-here) [gone](#gone)\n\n## A head, here\n",
+        "src/low/README.md": "[there](../../bench/run.sh) [gone](gone.h)\n",
         "docs/README.md": "[use](use/use.md) [good](measured/good.md) [bare](measured/bare.md) [stray](measured/stray.md)\n",
         "docs/a.png": "",
         "docs/use/use.md": "[good](../measured/good.md#figures)\n",
@@ -100,6 +102,7 @@ def self_test():
         "README.md: leads to docs/b.png, which is not there",
         "CONTRIBUTING.md: names scripts/gone.sh, which is not there",
         "ARCHITECTURE.md: leads to #gone, and there is no such heading",
+        "src/low/README.md: leads to gone.h, which is not there",
         "docs/README.md: does not link to use/lonely.md",
         "docs/measured/bare.md: does not say which command wrote it, at which commit, when, on which machine",
         "docs/measured/stray.md: there is no bench/gone.sh",
