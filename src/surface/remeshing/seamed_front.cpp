@@ -165,7 +165,7 @@ class SeamedFront : public FrontKind {
     return elementary::log(doubled / fourfold) < kVainSlope * elementary::log(kFourfold / kDoubled);
   }
 
-  /// The surface may stray farther if following it would take more elements than the budget has.
+  /// The surface may deviate farther if following it would take more elements than the budget has.
   void stray_within_budget(const std::vector<Curve>& curves, const SizeField& sizes, SizeField& foreseen) {
     ElementBudget& budget = work_.budget;
     double& tolerance = work_.tolerance;
@@ -220,7 +220,7 @@ class SeamedFront : public FrontKind {
     return mend_places(mesh, on_lines(mesh), limits, false);
   }
 
-  /// Smaller sizes and more triangles where it strays, while that helps.
+  /// Smaller sizes and more triangles where it deviates, while that helps.
   void refine_far(Draft& draft, DeviationWatch& watch, const SizeField& first) {
     Straying at_first;
     for (int k = 0; k < kRefinements; ++k) {
@@ -245,7 +245,7 @@ class SeamedFront : public FrontKind {
     return wanted;
   }
 
-  /// Where it strays with triangles as small as the input's: at how many places, how far beyond the bound in all; and
+  /// Where it deviates with triangles as small as the input's: at how many places, how far beyond the bound in all; and
   /// how many triangles there are.
   struct Straying {
     double places = 0, beyond = 0, triangles = 0;
@@ -271,7 +271,7 @@ class SeamedFront : public FrontKind {
            now.beyond * first.places > kNoNearer * first.beyond * now.places;
   }
 
-  /// Points of the complex where the draft strays still. What is left then lies beside seams: another round has to
+  /// Points of the complex where the draft deviates still. What is left then lies beside seams: another round has to
   /// divide these.
   void approach_far(Draft& draft, DeviationWatch& watch) {
     std::vector<FarPlace> places = far_places(work_, draft.mesh, watch);
