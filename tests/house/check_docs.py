@@ -10,6 +10,7 @@ What holds:
   machine" as bench/origin.py does, or "Measured by" where the figures were put on the page by hand; the script that the
   command begins with exists.
 - Links, pictures and anchors of pages lead somewhere; so do paths in backticks that begin with a folder of the project.
+- Workflows and .ci/run call scripts that are there.
 """
 import pathlib
 import re
@@ -21,6 +22,7 @@ ORIGIN = re.compile(r"(?:Written|Measured) by `(?P<script>[^` ]+)[^`]*` \(commit
 WRITTEN = re.compile(r"(?:Written|Measured) by `(?:bench|scripts)/")
 LINK = re.compile(r"\]\(([^)\s]+)\)")
 QUOTED = re.compile(r"`((?:bench|cli|cmake|docs|examples|include|licenses|python|samples|scripts|src|tests)/[\w./-]*)[^`]*`")
+SCRIPT = re.compile(r"\bscripts/[\w-]+\.\w+")
 FENCE = re.compile(r"^```.*?^```$", re.M | re.S)
 
 
@@ -75,10 +77,17 @@ class Docs:
                 if not (self.root / path).exists():
                     self.fault(page, f"names {path}, which is not there")
 
+    def check_workflows(self):
+        for path in [*sorted(self.root.glob(".github/workflows/*.yml")), *self.root.glob(".ci/run")]:
+            for script in SCRIPT.findall(path.read_text()):
+                if not (self.root / script).exists():
+                    self.fault(path, f"calls {script}, which is not there")
+
     def check(self):
         self.check_index()
         self.check_origins()
         self.check_links()
+        self.check_workflows()
         return self.faults
 
 
@@ -96,9 +105,11 @@ def self_test():
         "docs/measured/bare.md": "Written by `bench/run.sh it`, commit 0123abc.\n",
         "docs/measured/stray.md": "Measured by `bench/gone.sh` (commit 0123abc, 2026-01-31, AMD EPYC).\n",
         "bench/run.sh": "",
+        ".github/workflows/tests.yml": "steps:\n  - run: scripts/gone.sh --all\n",
     }
     expected = [
         "docs/use/lonely.md: does not say which command wrote it, at which commit, when, on which machine",
+        ".github/workflows/tests.yml: calls scripts/gone.sh, which is not there",
         "README.md: leads to docs/b.png, which is not there",
         "CONTRIBUTING.md: names scripts/gone.sh, which is not there",
         "ARCHITECTURE.md: leads to #gone, and there is no such heading",
