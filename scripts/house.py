@@ -39,7 +39,8 @@ def tree(commit):
 def rows(page, columns):
     """{room or wing: what its row names} of the tables with so many columns."""
     cells = ([c.strip() for c in line.strip().strip("|").split("|")] for line in page.splitlines())
-    return {c[0].strip("`"): re.findall(r"`([\w/]+)`", c[1]) for c in cells if len(c) == columns and re.fullmatch(r"`[\w/]+`", c[0])}
+    named = ((re.fullmatch(r"\[?`([\w/]+)`(?:\]\(\S+\))?", c[0]), c) for c in cells if len(c) == columns)
+    return {name[1]: re.findall(r"`([\w/]+)`", c[1]) for name, c in named if name}
 
 
 def arrows_between(files, place):

@@ -26,9 +26,10 @@ INCLUDE = re.compile(r'^\s*#\s*include\s*(?:"([^"]+)"|<octafront/([^>]+)>)', re.
 
 
 def rows(text, columns):
-    """The cells of each row of so many columns that begins with a name in backticks."""
+    """The cells of each row of so many columns that begins with a name in backticks, which may be a link."""
     cells = ([cell.strip() for cell in line.strip().strip("|").split("|")] for line in text.splitlines())
-    return [row for row in cells if len(row) == columns and re.fullmatch(r"`[\w/]+`", row[0])]
+    named = ((re.fullmatch(r"\[?`([\w/]+)`(?:\]\(\S+\))?", row[0]), row) for row in cells if len(row) == columns)
+    return [[name[1], *row[1:]] for name, row in named if name]
 
 
 def names_in(cell):
@@ -37,12 +38,12 @@ def names_in(cell):
 
 def read_wings(text):
     """{wing: wings it may include from}, of ARCHITECTURE.md, in the order of rows."""
-    return {row[0].strip("`"): names_in(row[1]) for row in rows(text, 3)}
+    return {row[0]: names_in(row[1]) for row in rows(text, 3)}
 
 
 def read_rooms(text):
     """{room: (rooms and wings it may include from, public headers that it defines)}, of a wing's README.md."""
-    return {row[0].strip("`"): (names_in(row[1]), names_in(row[4])) for row in rows(text, 5)}
+    return {row[0]: (names_in(row[1]), names_in(row[4])) for row in rows(text, 5)}
 
 
 def wing_of(room):
@@ -188,7 +189,7 @@ class House:
 
 def self_test():
     files = {
-        "ARCHITECTURE.md": "| `low` | - | it |\n| `mid` | `low`, `top` | it |\n| `top` | `mid` | it |\n| `bare` | - | it |\n",
+        "ARCHITECTURE.md": "| [`low`](src/low/README.md) | - | it |\n| `mid` | `low`, `top` | it |\n| `top` | `mid` | it |\n| `bare` | - | it |\n",
         "src/low/README.md": "| `low` | - | a | b | `p.h` |\n| `mid/two` | - | a | b | - |\n",
         "src/mid/README.md": "| `mid/one` | `mid/two`, `low` | a | b | - |\n| `mid/two` | - | a | b | - |\n| `mid/gone` | - | a | b | - |\n",
         "src/top/README.md": "| `top` | `mid`, `low` | a | b | - |\n",
