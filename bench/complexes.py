@@ -5,7 +5,7 @@ Usage: bench/run.sh complexes [--models NAME...] [--elements N] [--timeout SECON
 The complexes of scripts/make-complexes.sh. Anew: each mesher divides or triangulates the walls itself, to one size. Kept: the
 walls that Octafront triangulated to that size are the same for all. Every mesh is written as MEDIT and read back: octafront_evaluate
 judges elements, and volumes of the regions, one by one in the order of size, are compared with those of the walls given. Times are
-CPU seconds of the whole process, reading and writing included. Prints the tables of docs/use/complex.md; writes BUILD/complexes.json.
+CPU seconds of the whole process, reading and writing included. Prints the tables of docs/measured/complexes.md; writes BUILD/complexes.json.
 --regions compares with nobody else: each complex is meshed to a size, and then each of its regions by itself, a surface of its own
 without neighbours. Times are of the stages, without reading and writing.
 """

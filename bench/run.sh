@@ -11,13 +11,13 @@
 #   bench/run.sh volume      kept surfaces up to 10 M elements, against TetGen, HXT and Netgen -> docs/measured/volume-bench.md
 #   bench/run.sh graded      sizes that follow curvature, against HXT and TetGen side by side; from STL -> docs/measured/volume-bench.md
 #   bench/run.sh peers       surfaces kept and made anew, against TetGen, Gmsh, Netgen and CGAL -> build/release/experiments/peers.json
-#   bench/run.sh complexes   several regions in one mesh, against TetGen and Gmsh       -> docs/use/complex.md
+#   bench/run.sh complexes   several regions in one mesh, against TetGen and Gmsh       -> docs/measured/complexes.md
 #   bench/run.sh improve     improvement against its targets, never worse, start meshes of others -> docs/measured/improve-bench.md
 #   bench/run.sh adapt       the Working Group's cases of metrics, a loop with FEniCSx -> docs/measured/adapt.md
 #   bench/run.sh adapt_loops  meshes adapted to small and large sizes in turn, ten times -> docs/measured/adapt-isotropic.md
 #   bench/run.sh formats     how fast meshes are written, every format beside a plain write -> docs/measured/formats-bench.md
 #   bench/run.sh parts       meshes in parts: what divisions are worth, time and memory beside one file -> docs/measured/parts.md
-#   bench/run.sh second_order   all clean models, balls, tori, cylinders: proven? how true? at what cost? -> docs/how/second-order.md
+#   bench/run.sh second_order   all clean models, balls, tori, cylinders: proven? how true? at what cost? -> docs/measured/second-order.md
 #   bench/run.sh repair      the defective models, repaired and meshed; --near N: held to 1 ‰, too -> docs/measured/repair-status.md
 #   bench/run.sh known_answers   2,000 clean models damaged in known ways, repaired and judged -> docs/measured/repair-known.md
 #   bench/run.sh damage      clean models damaged in 24 ways beside the undamaged ones -> docs/measured/damage.md

@@ -1,9 +1,10 @@
 """Second order: is every element proven, how true is the curved boundary, what does it cost?
 
 Usage: bench/run.sh second_order [--shapes]
-Writes its tables into docs/how/second-order.md. --shapes leaves out the models.
+Writes its tables into docs/measured/second-order.md, each model into rows/second-order.csv. --shapes leaves out the models.
 """
 import argparse
+import csv
 import json
 import math
 import pathlib
@@ -12,7 +13,8 @@ import subprocess
 
 from origin import written_by
 
-PAGE = pathlib.Path("docs/how/second-order.md")
+PAGE = pathlib.Path("docs/measured/second-order.md")
+ROWS = PAGE.parent / "rows/second-order.csv"
 
 
 def head(titles):
@@ -60,25 +62,26 @@ def proven(r):
 
 
 def models(build):
-    lines = head(["model", "elements", "edges curved", "eased", "corners moved", "held back", "least scaled Jacobian",
-                  "proven", "crossings", "CPU s, first order", "second order costs"])
+    rows = [["model", "elements", "edges curved", "eased", "corners moved", "held back", "least scaled Jacobian",
+             "proven", "crossings", "CPU s, first order", "second order costs"]]
     results, costs = [], []
     for file in sorted(pathlib.Path("models/clean").iterdir()):
         r = run(build, file)[0]
         if "error" in r:
-            lines.append(f"| {file.name} | {r['error'].splitlines()[0]} |" + " |" * 9)
+            rows.append([file.name, r["error"].splitlines()[0]])
             continue
         results.append(r)
         costs.append(100 * (r["cpu_seconds"] / r["linear_cpu_seconds"] - 1))
-        lines.append(f"| {file.name} | {r['tets']:,} | {r['curved']:,} | {r['eased']:,} | {r['moved']:,} | {r['held']:,} | "
-                     f"{r['least_scaled_jacobian']:.3f} | {proven(r)} | {r['crossings']} | {r['linear_cpu_seconds']:.2f} | "
-                     f"{costs[-1]:+.0f} % |")
-        print(lines[-1], flush=True)
+        rows.append([file.name, r["tets"], r["curved"], r["eased"], r["moved"], r["held"], f"{r['least_scaled_jacobian']:.3f}",
+                     proven(r), r["crossings"], f"{r['linear_cpu_seconds']:.2f}", f"{costs[-1]:+.0f} %"])
+        print(*rows[-1], flush=True)
+    with ROWS.open("w", newline="") as file:
+        csv.writer(file, lineterminator="\n").writerows(rows)
     good = sum(r["valid"] and r["not_proven"] == 0 for r in results)
     curved, eased = (sum(r[key] for r in results) for key in ("curved", "eased"))
     return [f"{good} of {len(results)} meshes have every element proven, {sum(r['tets'] for r in results):,} elements in all. Of the edges that "
             f"want to bend, {curved:,} do and {eased:,} ({100 * eased / (curved + eased):.2f} %) had to be eased. Second order costs "
-            f"{statistics.median(costs):.0f} % of a linear run in the median, {max(costs):.0f} % at most.", "", *lines]
+            f"{statistics.median(costs):.0f} % of a linear run in the median, {max(costs):.0f} % at most. Each: [{ROWS.name}](rows/{ROWS.name})."]
 
 
 def replace(mark, lines):

@@ -54,7 +54,7 @@ function(octafront_unity target)
 endfunction()
 
 # octafront_wing(NAME [WINGS ...] [LIBS ...]): a static library of the rooms that follow. WINGS are those that the rows of
-# its rooms in ARCHITECTURE.md name (tests/house compares).
+# its rooms in src/NAME/README.md name (tests/house compares).
 function(octafront_wing name)
   cmake_parse_arguments(WING "" "" "WINGS;LIBS" ${ARGN})
   set(target octafront_${name})

@@ -19,9 +19,9 @@ render() { # mesh, picture, options
 }
 knot=(--cut 0,0,1 --keep 0.6 --view 0.2,-0.35,1)
 render "$work/guide/2/scan.vtu" docs/images/guide-scan.png "${knot[@]}"
-render "$work/guide/5/bend.vtu" docs/images/guide-sizes.png --cut 0,1,0 --up 0,0,1 --keep 0.5 --view 0.3,1,0.5
-"$(dirname "$python")/octafront" convert "$work/guide/4/knot.1.ele" -o "$work/before.vtu" -q
+render "$work/guide/7/bend.vtu" docs/images/guide-sizes.png --cut 0,1,0 --up 0,0,1 --keep 0.5 --view 0.3,1,0.5
+"$(dirname "$python")/octafront" convert "$work/guide/9/knot.1.ele" -o "$work/before.vtu" -q
 render "$work/before.vtu" "$work/before.png" "${knot[@]}"
-render "$work/guide/4/better.vtu" "$work/after.png" "${knot[@]}"
+render "$work/guide/9/better.vtu" "$work/after.png" "${knot[@]}"
 /usr/bin/python3 scripts/side_by_side.py docs/images/guide-improve.png "$work/before.png" "$work/after.png"
 xvfb-run -a env PYTHONPATH=examples/solve /usr/bin/python3 scripts/guide_bracket.py "$work/guide/1" docs/images/guide-calculix.png

@@ -10,7 +10,7 @@ import ccx
 import picture
 
 folder = pathlib.Path(sys.argv[1])
-mesh, fields = ccx.Mesh(folder / "bracket.inp"), ccx.frd(folder / "pull.frd")
+mesh, fields = ccx.Mesh(folder / "part.inp"), ccx.frd(folder / "pull.frd")
 moved = {node: u[:3] for node, u in fields["DISP"].items()}
 length = {node: sum(x * x for x in moved.get(node, (0, 0, 0))) ** 0.5 for node in mesh.nodes}
 window = vtk.vtkRenderWindow()

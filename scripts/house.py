@@ -4,7 +4,7 @@
     scripts/house.py [COMMIT ...]   prints docs/measured/house.md: the tree as it is, beside older commits; the part that
                                     scripts/touched.py wrote stays as it is committed
 
-Rooms are those that ARCHITECTURE.md of that commit names; an arrow is a room (or wing) of which a file includes one of
+Wings are those that ARCHITECTURE.md of that commit names, rooms those of src/WING/README.md (before: of ARCHITECTURE.md); an arrow is a room (or wing) of which a file includes one of
 another; a circle is a set of rooms that reach each other.
 """
 import collections
@@ -26,18 +26,21 @@ def git(*arguments):
 
 
 def tree(commit):
-    """{path under src: text}, and ARCHITECTURE.md."""
+    """{path under src: text} of sources, ARCHITECTURE.md, the pages with rooms."""
     if commit is None:
-        paths = [ROOT / p for p in git("ls-files", "src").split()]
-        return {p.relative_to(ROOT / "src").as_posix(): p.read_text() for p in paths if p.exists()}, (ROOT / "ARCHITECTURE.md").read_text()
-    paths = git("ls-tree", "-r", "--name-only", commit, "src").split()
-    return {p[4:]: git("show", f"{commit}:{p}") for p in paths}, git("show", f"{commit}:ARCHITECTURE.md")
+        texts = {p: (ROOT / p).read_text() for p in git("ls-files", "src", "ARCHITECTURE.md").split() if (ROOT / p).exists()}
+    else:
+        texts = {p: git("show", f"{commit}:{p}") for p in git("ls-tree", "-r", "--name-only", commit, "src", "ARCHITECTURE.md").split()}
+    architecture = texts.pop("ARCHITECTURE.md")
+    pages = [texts.pop(p) for p in list(texts) if p.endswith("/README.md")]
+    return {p.removeprefix("src/"): text for p, text in texts.items()}, architecture, "\n".join(pages)
 
 
-def rows(architecture, columns):
-    """{room or wing: what its row names} of the table with so many columns."""
-    cells = ([c.strip() for c in line.strip().strip("|").split("|")] for line in architecture.splitlines())
-    return {c[0].strip("`"): re.findall(r"`([\w/]+)`", c[1]) for c in cells if len(c) == columns and re.fullmatch(r"`[\w/]+`", c[0])}
+def rows(page, columns):
+    """{room or wing: what its row names} of the tables with so many columns."""
+    cells = ([c.strip() for c in line.strip().strip("|").split("|")] for line in page.splitlines())
+    named = ((re.fullmatch(r"\[?`([\w/]+)`(?:\]\(\S+\))?", c[0]), c) for c in cells if len(c) == columns)
+    return {name[1]: re.findall(r"`([\w/]+)`", c[1]) for name, c in named if name}
 
 
 def arrows_between(files, place):
@@ -66,9 +69,9 @@ def circles(arrows):
 
 class House:
     def __init__(self, commit):
-        self.files, architecture = tree(commit)
+        self.files, architecture, pages = tree(commit)
         self.name = git("log", "-1", "--format=%h of %cd", "--date=format:%Y-%m-%d", commit or "HEAD").strip()
-        self.may, self.rooms = rows(architecture, 3), rows(architecture, 4)
+        self.may, self.rooms = rows(architecture, 3), rows(pages, 5) or rows(architecture, 4)
         self.room_arrows = arrows_between(self.files, self.room)
         self.wing_arrows = arrows_between(self.files, self.wing)
         self.wings = collections.Counter(filter(None, map(self.wing, self.files)))

@@ -70,7 +70,7 @@ struct SurfaceDefects {
 /// A surface is refused for its defects.
 class DefectsError : public InputError {
  public:
-  explicit DefectsError(SurfaceDefects found) : DefectsError(found.describe(), std::move(found)) {}
+  explicit DefectsError(const SurfaceDefects& found) : DefectsError(found.describe(), found) {}
   DefectsError(const std::string& what, SurfaceDefects found) : InputError(what), defects(std::move(found)) {}
   SurfaceDefects defects;
 };

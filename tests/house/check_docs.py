@@ -10,6 +10,7 @@ What holds:
   machine" as bench/origin.py does, or "Measured by" where the figures were put on the page by hand; the script that the
   command begins with exists.
 - Links, pictures and anchors of pages lead somewhere; so do paths in backticks that begin with a folder of the project.
+- Workflows and .ci/run call scripts that are there.
 """
 import pathlib
 import re
@@ -21,6 +22,7 @@ ORIGIN = re.compile(r"(?:Written|Measured) by `(?P<script>[^` ]+)[^`]*` \(commit
 WRITTEN = re.compile(r"(?:Written|Measured) by `(?:bench|scripts)/")
 LINK = re.compile(r"\]\(([^)\s]+)\)")
 QUOTED = re.compile(r"`((?:bench|cli|cmake|docs|examples|include|licenses|python|samples|scripts|src|tests)/[\w./-]*)[^`]*`")
+SCRIPT = re.compile(r"\bscripts/[\w-]+\.\w+")
 FENCE = re.compile(r"^```.*?^```$", re.M | re.S)
 
 
@@ -65,7 +67,8 @@ class Docs:
             self.fault(page, f"leads to {link}, and there is no such heading")
 
     def check_links(self):
-        for page in [*self.pages, *(self.root / name for name in ("README.md", "CONTRIBUTING.md", "ARCHITECTURE.md"))]:
+        beside = [self.root / name for name in ("README.md", "CONTRIBUTING.md", "ARCHITECTURE.md")]
+        for page in [*self.pages, *beside, *sorted(self.root.glob("src/*/README.md"))]:
             text = FENCE.sub("", page.read_text())
             for link in LINK.findall(text):
                 if not re.match(r"\w+:", link):
@@ -74,10 +77,17 @@ class Docs:
                 if not (self.root / path).exists():
                     self.fault(page, f"names {path}, which is not there")
 
+    def check_workflows(self):
+        for path in [*sorted(self.root.glob(".github/workflows/*.yml")), *self.root.glob(".ci/run")]:
+            for script in SCRIPT.findall(path.read_text()):
+                if not (self.root / script).exists():
+                    self.fault(path, f"calls {script}, which is not there")
+
     def check(self):
         self.check_index()
         self.check_origins()
         self.check_links()
+        self.check_workflows()
         return self.faults
 
 
@@ -86,6 +96,7 @@ def self_test():
         "README.md": "![a](docs/a.png) [b](docs/b.png) [there](https://there)\n```\n[c](c.png)\n```\n",
         "CONTRIBUTING.md": "`docs/README.md`, `scripts/gone.sh --all`, `build/a`\n",
         "ARCHITECTURE.md": "[here](#a-head-here) [gone](#gone)\n\n## A head, here\n",
+        "src/low/README.md": "[there](../../bench/run.sh) [gone](gone.h)\n",
         "docs/README.md": "[use](use/use.md) [good](measured/good.md) [bare](measured/bare.md) [stray](measured/stray.md)\n",
         "docs/a.png": "",
         "docs/use/use.md": "[good](../measured/good.md#figures)\n",
@@ -94,12 +105,15 @@ def self_test():
         "docs/measured/bare.md": "Written by `bench/run.sh it`, commit 0123abc.\n",
         "docs/measured/stray.md": "Measured by `bench/gone.sh` (commit 0123abc, 2026-01-31, AMD EPYC).\n",
         "bench/run.sh": "",
+        ".github/workflows/tests.yml": "steps:\n  - run: scripts/gone.sh --all\n",
     }
     expected = [
         "docs/use/lonely.md: does not say which command wrote it, at which commit, when, on which machine",
+        ".github/workflows/tests.yml: calls scripts/gone.sh, which is not there",
         "README.md: leads to docs/b.png, which is not there",
         "CONTRIBUTING.md: names scripts/gone.sh, which is not there",
         "ARCHITECTURE.md: leads to #gone, and there is no such heading",
+        "src/low/README.md: leads to gone.h, which is not there",
         "docs/README.md: does not link to use/lonely.md",
         "docs/measured/bare.md: does not say which command wrote it, at which commit, when, on which machine",
         "docs/measured/stray.md: there is no bench/gone.sh",

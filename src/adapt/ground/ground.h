@@ -43,7 +43,8 @@ std::vector<std::uint32_t> find_paths(std::size_t vertices, Features& lines,
 /// Const and safe on any number of threads.
 class Ground {
  public:
-  /// Walls and lines that `given`, which may be null and must outlive this, has near them lie there.
+  /// The reference surface and curves of these walls: `given` where it is near them, their own smooth surface
+  /// elsewhere. `given` may be null, and must outlive this.
   explicit Ground(Walls walls, const GivenSurface* given = nullptr);
 
   /// The surface that was given; null: none.
@@ -53,15 +54,15 @@ class Ground {
   /// The corner of the given surface where a corner of the walls belongs.
   std::optional<Vec3> corner(VertexIndex v) const;
 
-  /// The place of the smooth surface of a part that belongs to p, if that part is within reach of p and not turned away
-  /// from `normal`: for outer walls outward, of others either way.
+  /// The place on the reference surface of a part that is nearest to p; none if it is farther than `reach`, or turned
+  /// away from `normal`. The outer boundary must face outward, interfaces and sheets may face either way.
   std::optional<Vec3> on_surface(Vec3 p, std::uint32_t part, bool outer, Vec3 normal, double reach) const;
-  /// The place of the smooth line that belongs to p, if it is within reach.
+  /// The same on the reference curve of a path.
   std::optional<Vec3> on_line(Vec3 p, std::uint32_t path, double reach) const;
 
-  /// Edges of walls, within one part and on no line, where the ground bends such that edges across them of the length
-  /// wanted(place, direction) would cut off more than `tolerance`, per part: where no smooth surface goes through the
-  /// vertices the old triangles are the ground. Ascending.
+  /// Sharp bends of the reference surface where the old triangles are that surface, for no smooth one goes through
+  /// their vertices: edges within one part and on no curve at which an edge across, of the length wanted(place,
+  /// direction), would cut off more than the part's `tolerance`. Ascending.
   std::vector<Edge> kinks(const std::function<double(Vec3, Vec3)>& wanted, std::span<const double> tolerance) const;
 
   /// How triangles of a part lie to it, at the worst of the places looked at: middles of triangles and of edges.

@@ -41,17 +41,20 @@ constexpr int kDone = 200;
 constexpr float kGoodForSwaps = 0.8f, kGoodScore = 0.9f, kGoodOnTheWay = 0.3f;
 /// Edges of other lengths do not come near to what is wanted.
 constexpr double kFarShort = 0.5, kFarLong = 2;
-/// Times that elements are made smaller where walls stray too far, those of them in a row that may be in vain, and how
-/// long their longest edges are made to be: so that they are divided.
+/// Rounds in which elements are made smaller where the surface deviates too far, how many in a row may be in vain, and
+/// how long the longest edges there are said to be, in wanted lengths, so that they are divided.
 constexpr int kMostMendings = 10, kMostInVain = 3;
 constexpr double kLengthOfStray = 1.6;
 /// Triangles with no edge longer than so many times the bound do not stray because they are large.
 constexpr double kLeastEdgeOfStray = 2;
-/// Less gain than this is none, in all and of one time, for all that some gain is taken that costs so few elements; and
-/// no more elements than so many times those before.
+/// When smaller elements against deviation are worth it. A round counts as in vain unless it brings the excess over the
+/// bound below kLeastProgress of what it was. What all rounds made is taken if the excess fell below
+/// kLeastGainOfMending of the first one; below kLeastProgress is enough if elements are fewer than kFewMore times those
+/// before. Rounds end beyond kGrowthOfMending times the elements.
 constexpr double kLeastGainOfMending = 0.7, kLeastProgress = 0.98, kFewMore = 1.1;
 constexpr std::size_t kGrowthOfMending = 2;
-/// Where edges would cut off more than this part of the bound from a bend of the ground, it is a line.
+/// Where edges would cut off more than this part of the bound from a bend of the reference surface, the bend is a
+/// curve.
 constexpr double kShareOfKink = 0.5;
 /// Around them lengths grow by this part of the way, both counted in lengths; what changes less is let be.
 constexpr double kGradationOfStrays = 0.5, kLeastChangeOfDensity = 1.02;

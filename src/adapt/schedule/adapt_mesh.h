@@ -28,7 +28,7 @@ struct ToleranceOfSet {
 struct AdaptRules {
   double feature_angle = 40;  ///< degrees
   double tolerance = 0;       ///< how far walls may stray from the smooth surface of the input; input units
-  /// Elements become smaller than wanted where walls that stray farther came so; else these are let be.
+  /// Whether elements become smaller than wanted where the surface deviated farther already when it came.
   bool strict = false;
   bool walls_ahead = true;  ///< as of take_step()
   /// Where walls lie instead of on their own smooth surface, as far as it is near them; null: nowhere.
@@ -36,9 +36,9 @@ struct AdaptRules {
   std::span<const ToleranceOfSet> tolerances = {};  ///< of faces in several the least counts, in none that of all
   bool keep_walls = false;                          ///< vertices on walls, and all edges between them, stay as they are
   std::span<const std::uint8_t> kept = {};  ///< per vertex: it stays, and so does what lies between such; empty: none
-  /// Per vertex: it stays, and so does what lies between vertices that do; elements with none but such vertices are not
-  /// in the result. Empty: all may change. The faces of the mesh that are no walls of it are where it was cut out of
-  /// another: their vertices must be frozen.
+  /// Per vertex whether it is frozen; edges, faces and elements between frozen vertices are, too, and elements with
+  /// none but frozen vertices are not in the result. Empty: all may change. If the mesh was cut out of another, the
+  /// vertices of the cut, faces of one element that are no boundary, must be frozen.
   std::span<const std::uint8_t> frozen = {};
   std::span<const std::uint32_t> kept_sets = {};  ///< sets of the mesh, by number, whose members stay: hold_sets()
 };

@@ -5,7 +5,7 @@
 
 /// Elementary functions that give the same bits on every processor, with every compiler and C library: only sums,
 /// products, quotients and roots, which IEEE 754 fixes. The C library's own differ from one variant for a processor to
-/// the next in the last bit, and a decision hangs on it sooner or later. Errors are of one or two units in the last
+/// the next in the last bit, and a decision depends on it sooner or later. Errors are of one or two units in the last
 /// place. The series are those of every textbook (M. Abramowitz, I. Stegun, Handbook of Mathematical Functions, 4).
 namespace octafront::elementary {
 

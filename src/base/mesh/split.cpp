@@ -4,7 +4,6 @@
 #include "base/core/disjoint_sets.h"
 #include "base/core/wording.h"
 #include "base/mesh/adjacency.h"
-#include "base/mesh/mesh.h"
 
 #include <algorithm>
 #include <charconv>

@@ -64,7 +64,8 @@ FaceGroups groups_of(const CadModel& model, DisjointSets& sets) {
   return groups;
 }
 
-/// Per face the first of the names that it has, or that a label of it has; kNone: none.
+/// Per face the first name of `apart`, by number, that the face or one of its labels (colours, layers) has; kNone:
+/// none. Faces are only joined with others of the same number, so that sizes asked by these names keep their faces.
 std::vector<std::uint32_t> which_of(const CadModel& model, std::span<const std::string> apart,
                                     const std::vector<std::string>& names) {
   std::vector<std::uint32_t> which(model.faces.size(), kNone);

@@ -21,7 +21,7 @@ struct FrontTask {
   Ranks* ranks = nullptr;  ///< that share its blocks; null: none
 };
 
-/// A volume as a whole number of 2^-50 of that of a box: a sum of such hangs on no order.
+/// A volume as a whole number of 2^-50 of that of a box: a sum of such depends on no order.
 inline std::int64_t volume_part(double volume, const Box3& box) {
   const Vec3 e = box.extent();
   const double whole = e.x * e.y * e.z;

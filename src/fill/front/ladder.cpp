@@ -7,7 +7,8 @@
 #include "base/core/stage_timer.h"
 #include "base/core/validate.h"
 #include "base/mesh/renumber.h"
-#include "fill/cavity/cavity.h"
+#include "fill/cavity/star.h"
+#include "fill/cavity/work_mesh.h"
 #include "fill/front/backtrack.h"
 #include "fill/front/recover_cavity.h"
 

@@ -20,8 +20,8 @@ namespace octafront {
 /// too thin for good elements (docs/how/volume-front.md has the measurement).
 inline constexpr double kCoreClearance = 0.4;
 
-/// A site by number. Leaf i has 2 i for its centre and 2 i + 1 for its lower corner; the few other sites (they hang on
-/// the side of a larger leaf, or lie on an upper side of the root) are numbered as `kHanging` and up by each chunk.
+/// A site by number. Leaf i has 2 i for its centre and 2 i + 1 for its lower corner; the few other sites (they depend
+/// on the side of a larger leaf, or lie on an upper side of the root) are numbered as `kHanging` and up by each chunk.
 using SiteNumber = std::uint32_t;
 inline constexpr SiteNumber kHanging = 0x80000000u;
 

@@ -5,7 +5,7 @@
 #include "formats/table/formats.h"
 #include "formats/table/recognize.h"
 #include "images/files/byte_source.h"
-#include "images/files/dicom/dicom.h"
+#include "images/files/dicom/series.h"
 #include "images/files/readers.h"
 
 #include <algorithm>

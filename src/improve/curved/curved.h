@@ -14,11 +14,11 @@
 
 namespace octafront {
 
-// `below`, where something grows on the boundary: per vertex the one of the boundary under it, or itself; columns go
-// along with their wall. Empty: nothing does.
+// `below`: per vertex the boundary vertex at the foot of its column of boundary layers, or itself. A column moves along
+// with its foot. Empty: there are no layers.
 
 /// As make_second_order(), with what the pipeline knows already. `sharp`: feature edges of the boundary of the mesh,
-/// sorted, those between patches too. `fixed`: corners that stay where they are, ascending.
+/// sorted, those between patches too. `fixed`: frozen corners, ascending.
 SecondOrderSummary curve_to_surface(TetMesh& mesh, const std::vector<Edge>& sharp, const KnownSurface& surface,
                                     double feature_angle, std::span<const VertexIndex> below,
                                     std::span<const VertexIndex> fixed, const RunContext& context);

@@ -34,8 +34,8 @@ struct SurfaceMesh;
 struct Prepared {
   KnownSurface surface;                                             ///< repaired, unfolded
   SurfaceDomain::Defects defects = SurfaceDomain::Defects::kClean;  ///< other than clean where the method allows it
-  /// Per triangle of the surface how near the new one stays to it, where that is nearer than elsewhere: by what
-  /// unfolding has used up of a bound of the user's, and where repair moved something. Empty: so nowhere.
+  /// Per triangle, how far the new surface may deviate there, where that is less than everywhere else: where unfolding
+  /// has used up a part of the user's bound, and where repair moved something. Empty: nowhere less.
   std::vector<double> bound = {};
   bool unfolded = false;  ///< folds were taken off
   /// Of the regions, by number, before folds were taken off. Only of a clean surface.

@@ -37,6 +37,7 @@ std::string given_up_for_size(const Options& options, double spacing) {
       *options.size.size, spacing, strays, used.size.min_size.value_or(0), close);
 }
 
+// Only a method whose surface front triangulates the net anew can follow it more or less closely.
 Options options_for_voxels(Options options, double spacing) {
   options.surface.keep_volumes = true;
   SizeOptions& sizes = options.size;

@@ -111,7 +111,7 @@ class GridMaker {
     return sizes;
   }
 
-  /// Calls visit(corner, cap, sample) for each free corner that a leaf's values hang on and each sample in it.
+  /// Calls visit(corner, cap, sample) for each free corner that a leaf's values depend on and each sample in it.
   template <class Visit>
   void for_each_cap(const Visit& visit) const {
     const auto lay_on = [&](std::uint32_t corner, const Sample& s) {

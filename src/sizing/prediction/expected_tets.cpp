@@ -99,7 +99,8 @@ double elements_asked_inside(const Demand& demand) {
   return sum;
 }
 
-/// The cell size that makes the elements asked for, near that of the surface, where the front meets the lattice.
+/// The cell of the lattice by three costs: it should make the number of elements asked for, be near the size of the
+/// surface, where the front meets the lattice, and give most of the volume cells of one size.
 double choose_cell(const Demand& demand) {
   const double asked = elements_asked_inside(demand);
   double best = demand.surface_size, least = HUGE_VAL;

@@ -24,7 +24,7 @@ namespace {
 /// Some ten seconds of work, and more than most models need.
 constexpr double kBudget = 3e5, kBudgetPerTriangle = 5, kMostBudget = 1.5e6;
 /// Of these what details get before the surface is made. The surface takes the rest for what it has to follow: strips
-/// between lines, and places where it would stray.
+/// between lines, and places where it would deviate.
 constexpr double kForDetails = 200'000;
 /// A body that is thinner than its base size by and large, as plates, stars, combs and wires are, gets so many times
 /// what the base size alone comes to, and this much in any case: its gaps and bends ask for very many.

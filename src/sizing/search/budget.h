@@ -32,9 +32,9 @@ struct WithinCount {
   double floor = 0;  ///< no size is below this; 0: nothing was raised
 };
 
-/// `finer` where that has no more than `most` elements. Otherwise the sizes of `finer` that are below one floor are
-/// raised to this floor, but nowhere above `first`: what is asked for on top of `first` is met as far as the elements
-/// go.
+/// The sizes `finer` if they come to no more than `most` elements. Else its smallest sizes are raised to one floor, the
+/// lowest that keeps to `most`, and nowhere above `first`: so what `finer` asks beyond `first` is granted as far as the
+/// budget goes.
 WithinCount within_count(const SizeField& finer, const SizeField& first, const TetPrediction& expected, double most,
                          const RunContext& context);
 

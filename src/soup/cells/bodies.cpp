@@ -629,7 +629,7 @@ std::optional<JoinedWay> fitting_way(const Joining& joining, double size) {
 }
 
 /// Orders of bodies in which the walls of earlier ones may stay: as they are given; the coarsest first; and if that is
-/// no great work all others, as the one that is right hangs on where facets of each lie.
+/// no great work all others, as the one that is right depends on where facets of each lie.
 std::vector<std::pair<std::vector<std::uint32_t>, std::string>> orders_of(const Joining& joining) {
   constexpr std::size_t kMostBodies = 3, kMostTriangles = 20'000;
   const std::vector<std::uint32_t> given = as_given(joining.misfits), coarsest = joining.misfits.coarsest_first();

@@ -1,6 +1,5 @@
-#include "soup/mend/mend.h"
-
 #include <octafront/error.h>
+#include <octafront/mend.h>
 #include <octafront/repair.h>
 
 #include "base/core/disjoint_sets.h"

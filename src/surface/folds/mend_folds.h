@@ -1,7 +1,7 @@
 #pragma once
 
-// surface/folds: what is folded, crosses or strays, made good place by place: folds taken off the input before the
-// front (unfold), places mended at the end (mend_folds), triangles drawn to the input where they stray
+// surface/folds: what is folded, crosses or deviates, made good place by place: folds taken off the input before the
+// front (unfold), places mended at the end (mend_folds), triangles drawn to the input where they deviate
 // (draw_to_input).
 
 #include <octafront/run_context.h>

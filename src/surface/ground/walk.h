@@ -1,7 +1,7 @@
 #pragma once
 
 // surface/ground: the input as the ground of the surface front: points on it and walks across it (walk.h), what
-// strays from it, turns or crosses (deviation, turning, crossings), places where its own triangles stay
+// deviates from it, turns or crosses (deviation, turning, crossings), places where its own triangles stay
 // (kept_places). Takes the input, changes nothing.
 
 #include "base/mesh/half_edge_mesh.h"

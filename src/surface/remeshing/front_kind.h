@@ -54,9 +54,9 @@ class FrontKind {
   virtual std::optional<std::string> first_defect(const SurfaceMesh& made, bool crosses, std::vector<Vec3>& at) = 0;
   /// Smaller sizes at these places, or the input's triangles. `crosses`: what was found there.
   virtual void answer(const std::vector<Vec3>& places, const Outcome&, bool crosses, RoundSizes&) = 0;
-  /// No other round is made for `far` places that stray.
+  /// No other round is made for `far` places that deviate.
   virtual bool leaves_far(std::size_t far, const Outcome&) const = 0;
-  /// Smaller sizes where the surface strayed.
+  /// Smaller sizes where the surface deviated.
   virtual void cap_far(const Nearness&, RoundSizes&) const = 0;
   virtual bool is_stuck() const { return false; }
   /// Whether the input's triangles are so long that none of them may move if all of them stay.

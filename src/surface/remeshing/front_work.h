@@ -80,10 +80,10 @@ struct FrontWork {
 /// How near the new surface lies to the input.
 struct Nearness {
   std::vector<Vec3> approached;    ///< where points of the input were put in
-  std::vector<Vec3> far, farther;  ///< where it strays still: too far, and much too far
+  std::vector<Vec3> far, farther;  ///< where it deviates still: too far, and much too far
   double farthest = 0;
   bool is_near_enough = false;          ///< though there are such places
-  std::vector<PointSize> wanted;        ///< sizes by which it would stray less there
+  std::vector<PointSize> wanted;        ///< sizes by which it would deviate less there
   std::vector<VertexIndex> near_limit;  ///< corners of triangles that nearly do, in the working mesh
 };
 

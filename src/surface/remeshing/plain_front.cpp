@@ -28,16 +28,16 @@ constexpr double kAsLong = 4;
 /// search takes the square of their number: where they are this part of the surface, as the facets of a needle are, all
 /// of it stays.
 constexpr double kFarTooLong = 100, kMostlyTooLong = 0.25;
-/// Sizes where the new surface strays too far become this part of themselves, and for how many rounds; less at once
-/// where it strays so many times as far as it may.
+/// Sizes where the new surface deviates too far become this part of themselves, and for how many rounds; less at once
+/// where it deviates so many times as far as it may.
 constexpr double kDeviationCap = 0.7, kMuchTooFar = 2, kDeviationCapFar = 0.5;
 constexpr int kMostDeviationRounds = 5;
-/// How often points of the input are put in where the new surface nearly strays, and where it strays, if it does so at
-/// few places: at this part of its triangles. At more of them it is made anew with smaller sizes.
+/// How often points of the input are put in where the new surface nearly deviates, and where it deviates, if it does so
+/// at few places: at this part of its triangles. At more of them it is made anew with smaller sizes.
 constexpr int kApproachesWhereNear = 3, kMostApproaches = 6;
 constexpr double kFewFar = 0.02;
-/// At fewer than this part it is mended where it strays or crosses; another round would cost as much as the first. Of a
-/// small surface rounds cost little, and make better triangles.
+/// At fewer than this part it is mended where it deviates or crosses; another round would cost as much as the first. Of
+/// a small surface rounds cost little, and make better triangles.
 constexpr double kNoRound = 1e-3;
 /// So often, until so many in a row have left no fewer places.
 constexpr int kMostRefinements = 5, kMostInVain = 2;
@@ -141,7 +141,7 @@ class PlainFront : public FrontKind {
     return mend_places(draft.mesh, draft.is_fixed, limits, clear);
   }
 
-  /// What strays or crosses at few places is mended where it is: by points of the input, and smaller triangles where
+  /// What deviates or crosses at few places is mended where it is: by points of the input, and smaller triangles where
   /// these do not help.
   void come_near(Draft& draft, const SizeField& first) {
     Nearness& n = draft.nearness;
@@ -163,7 +163,7 @@ class PlainFront : public FrontKind {
     }
   }
 
-  /// Puts in points of the input where the draft strays or nearly does. Returns where it does so still.
+  /// Puts in points of the input where the draft deviates or nearly does. Returns where it does so still.
   std::vector<FarPlace> brought_near(Draft& draft, DeviationWatch& watch) {
     std::vector<FarPlace> places = far_places(work_, draft.mesh, watch);
     if (!put_in_points(draft, watch, places)) return places;
@@ -171,7 +171,7 @@ class PlainFront : public FrontKind {
     return far_places(work_, draft.mesh, watch);
   }
 
-  /// Points of the input at the places, and where it strays then, while that leaves fewer; false if none was put in.
+  /// Points of the input at the places, and where it deviates then, while that leaves fewer; false if none was put in.
   bool put_in_points(Draft& draft, DeviationWatch& watch, std::vector<FarPlace> places) {
     const double tolerance = work_.tolerance;
     const auto strays = [&] {
@@ -204,7 +204,7 @@ class PlainFront : public FrontKind {
     n.is_near_enough = is_near_enough(draft.mesh, places);
   }
 
-  /// Whether it strays nowhere, or a little at few places.
+  /// Whether it deviates nowhere, or a little at few places.
   bool is_near_enough(const WorkingMesh& mesh, std::vector<FarPlace> places) const {
     std::erase_if(places, [&](const FarPlace& p) { return p.distance < work_.tolerance; });
     const double most = work_.limits.slack * work_.tolerance;
@@ -212,7 +212,7 @@ class PlainFront : public FrontKind {
                               std::ranges::all_of(places, [&](const FarPlace& p) { return p.distance <= most; }));
   }
 
-  /// Sizes by which it would stray no more, and smaller ones where it crosses; none if that is at many places.
+  /// Sizes by which it would deviate no more, and smaller ones where it crosses; none if that is at many places.
   std::vector<PointSize> sizes_where_few(const Draft& draft, std::vector<FarPlace> places,
                                          const SizeField& first) const {
     const WorkingMesh& mesh = draft.mesh;

@@ -28,7 +28,7 @@ struct Remeshed {
 
 /// How far a wish may be missed to spare work.
 struct FrontLimits {
-  double slack = 1;  ///< the surface is not made anew for a few places that stray so many times as far as it may
+  double slack = 1;  ///< the surface is not made anew for a few places that deviate so many times as far as it may
   /// Elements that the sizes come to at most, by the prediction. What strips and the deviation ask for beyond that is
   /// given up, and said; what crosses is not.
   double budget = HUGE_VAL;

@@ -20,29 +20,28 @@ namespace octafront::remeshing {
 
 namespace {
 
-/// A complex that strays at fewer places than this part of its triangles is not made anew for it.
+/// A complex that deviates at fewer places than this part of its triangles is not made anew for it.
 constexpr double kVeryFew = 1e-4;
-/// But where it strays at first, with triangles as small as the input's, at more places than this part of their number,
-/// and so many times the triangles leave as many such places, that lie beyond the bound by this part of before, the
-/// input is noise: what chords of its steps cut off shrinks only as they do, and each new triangulation crosses
-/// elsewhere.
+/// When the input is noise. It deviates at first, with triangles as small as the input's, at more than kNoise of them;
+/// and kManyMore times the triangles leave as many such places, beyond the bound by more than kNoNearer of before.
+/// Steps of noise lose their chords only as fast as triangles shrink, and each new triangulation crosses elsewhere.
 constexpr double kNoise = 0.08, kManyMore = 1.5, kNoNearer = 0.5;
-/// So often sizes are made smaller where it strays in a round; there are no more than two for this. (Two in the first
-/// and one in the second are half the time, and leave 208 places of a skull too far where three leave 6, and 138
-/// elements below .4 instead of 27.)
+/// How often sizes are lowered where it deviates, in each of two rounds at most. (Two in the first and one in the
+/// second take half the time, and leave 208 places of a skull too far instead of 6, and 138 elements below .4 instead
+/// of 27.)
 constexpr int kRefinements = 3;
-/// And from there they rise faster than elsewhere, as around corners: it is a matter of single ridges and tips. That
-/// makes far fewer elements.
+/// The gradation around sizes lowered for deviation: steeper than elsewhere, since they belong to single ridges and
+/// tips. That makes far fewer elements.
 constexpr double kSteep = 0.4;
-/// How often points of the input are put in where it strays still.
+/// How often points of the input are inserted where it still deviates.
 constexpr int kApproaches = 3;
 /// Mended once more at the very end, within this part of the bound on deviation.
 constexpr double kLittle = 0.3;
-/// This part of all triangles is few that cross, where it is more than of single surfaces: between sheets a voxel
+/// Up to this part of all triangles, those that cross are few. More than on single surfaces: sheets may lie a voxel
 /// apart.
 constexpr double kFewCrossingPart = 0.005;
-/// Points go into what crosses where that is at fewer than this part of its triangles, and again where that left no
-/// more than so much of it.
+/// Points are inserted into crossing triangles if these are fewer than kFewToDivide of all, and again if no more than
+/// kWorthAnother of them are left.
 constexpr double kFewToDivide = 0.02, kWorthAnother = 0.7;
 /// Not nearer to their triangles than this part of their size.
 constexpr double kInPlane = 0.02;
@@ -166,7 +165,7 @@ class SeamedFront : public FrontKind {
     return elementary::log(doubled / fourfold) < kVainSlope * elementary::log(kFourfold / kDoubled);
   }
 
-  /// The surface may stray farther if following it would take more elements than the budget has.
+  /// The surface may deviate farther if following it would take more elements than the budget has.
   void stray_within_budget(const std::vector<Curve>& curves, const SizeField& sizes, SizeField& foreseen) {
     ElementBudget& budget = work_.budget;
     double& tolerance = work_.tolerance;
@@ -221,7 +220,7 @@ class SeamedFront : public FrontKind {
     return mend_places(mesh, on_lines(mesh), limits, false);
   }
 
-  /// Smaller sizes and more triangles where it strays, while that helps.
+  /// Smaller sizes and more triangles where it deviates, while that helps.
   void refine_far(Draft& draft, DeviationWatch& watch, const SizeField& first) {
     Straying at_first;
     for (int k = 0; k < kRefinements; ++k) {
@@ -246,7 +245,7 @@ class SeamedFront : public FrontKind {
     return wanted;
   }
 
-  /// Where it strays with triangles as small as the input's: at how many places, how far beyond the bound in all; and
+  /// Where it deviates with triangles as small as the input's: at how many places, how far beyond the bound in all; and
   /// how many triangles there are.
   struct Straying {
     double places = 0, beyond = 0, triangles = 0;
@@ -272,7 +271,7 @@ class SeamedFront : public FrontKind {
            now.beyond * first.places > kNoNearer * first.beyond * now.places;
   }
 
-  /// Points of the complex where the draft strays still. What is left then lies beside seams: another round has to
+  /// Points of the complex where the draft deviates still. What is left then lies beside seams: another round has to
   /// divide these.
   void approach_far(Draft& draft, DeviationWatch& watch) {
     std::vector<FarPlace> places = far_places(work_, draft.mesh, watch);

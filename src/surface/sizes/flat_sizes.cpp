@@ -26,7 +26,7 @@ constexpr double kOffChord = 1;
 constexpr double kGrowth = 1.25;
 /// Where normals cancel out to less than this part of the area the surface has turned.
 constexpr double kFacing = 0.5;
-/// What is flat so far needs no look at all of it: larger sizes are found by how far the surface strays.
+/// What is flat so far needs no look at all of it: larger sizes are found by how far the surface deviates.
 constexpr std::size_t kMostFaces = 600;
 /// Sizes above this part of the wanted one are not worth a place.
 constexpr double kWorthwhilePlace = 0.85;

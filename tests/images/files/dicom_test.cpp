@@ -1,8 +1,7 @@
-#include "images/files/dicom/dicom.h"
-
 #include <octafront/error.h>
 #include <octafront/image.h>
 
+#include "images/files/dicom/series.h"
 #include "images/small_images.h"
 
 #include <algorithm>

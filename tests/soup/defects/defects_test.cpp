@@ -186,6 +186,16 @@ TEST(Defects, MessageSaysHowManyWhereAndWhatToDo) {
       "`octafront repair` closes holes, and joins edges that only fail to touch.");
 }
 
+TEST(Defects, TheErrorSaysThePlacesAndCarriesThem) {
+  SurfaceMesh s = testing::icosphere(1);
+  s.triangles.pop_back();
+  const SurfaceDefects defects = defects_of(s);
+  const DefectsError error(defects);
+  EXPECT_EQ(error.what(), defects.describe());
+  EXPECT_NE(defects.describe().find("edge at ("), std::string::npos);
+  EXPECT_EQ(error.defects.open_edges.first.size(), 3u);
+}
+
 TEST(Defects, NoMessageSendsAnybodyToAnotherProgram) {
   SurfaceDefects d;
   for (SurfaceDefects::Kind* kind :
