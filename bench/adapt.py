@@ -12,7 +12,7 @@ import pathlib
 import subprocess
 import tempfile
 
-from origin import ROOT, written_by
+from pages.origin import ROOT, written_by
 
 # Case, body, edges of the mesh that comes, and what was asked: % of edges that fit, least and mean quality.
 CASES = [("cube, linear", "cube", 0.5, "linear", 98.5, 0.50, 0.86), ("cube-cylinder, linear", "ring", 0.1, "linear", 94, 0.30, 0.82),

@@ -10,7 +10,7 @@ import pathlib
 import subprocess
 import tempfile
 
-from origin import written_by
+from pages.origin import written_by
 
 # name, surface, small and large size in parts of the diagonal of its box
 MODELS = [("bunny", "models/clean/bunny00.off", 1 / 60, 1 / 30), ("armadillo", "models/clean/armadillo.off", 1 / 80, 1 / 40),

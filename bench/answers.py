@@ -21,7 +21,7 @@ from answers_cases import all_cases  # noqa: E402
 from answers_check import check  # noqa: E402
 from answers_planar import write_step  # noqa: E402
 from answers_solved import solve  # noqa: E402
-from origin import ORIGIN  # noqa: E402
+from pages.origin import ORIGIN  # noqa: E402
 
 SOLVE_SECONDS, MESH_SECONDS = 60, 60
 MOST_UNKNOWNS = 110_000  # CalculiX's direct solver takes 40 s for 90,000 in the cube about the cavity, where they are the dearest

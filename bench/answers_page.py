@@ -2,7 +2,7 @@
 import math
 import pathlib
 
-from origin import written_by
+from pages.origin import written_by
 
 PAGE = pathlib.Path("docs/measured/answers.md")
 HERE = pathlib.Path(__file__).resolve().parent

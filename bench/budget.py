@@ -14,7 +14,7 @@ import statistics
 import subprocess
 import tempfile
 
-from origin import written_by
+from pages.origin import written_by
 from peers.process import run_measured
 
 CAD = (".step", ".stp", ".brep", ".iges", ".igs")

@@ -19,7 +19,7 @@ import tempfile
 sys.path.insert(0, str(pathlib.Path(__file__).resolve().parent))
 import cad_names  # noqa: E402
 import cad_page  # noqa: E402
-from origin import ORIGIN  # noqa: E402
+from pages.origin import ORIGIN  # noqa: E402
 from peers import netgen  # noqa: E402
 from peers.process import finish, run_measured  # noqa: E402
 

@@ -4,7 +4,7 @@ import pathlib
 import re
 import statistics
 
-from origin import written_by
+from pages.origin import written_by
 
 PAGE = pathlib.Path("docs/measured/cad.md")
 TEXT = pathlib.Path(__file__).resolve().parent / "cad.md.in"

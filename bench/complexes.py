@@ -19,7 +19,7 @@ import tempfile
 
 BENCH = pathlib.Path(__file__).resolve().parent
 sys.path.insert(0, str(BENCH))
-from origin import written_by  # noqa: E402
+from pages.origin import written_by  # noqa: E402
 from peers import complexes, tetgen  # noqa: E402
 from peers.process import finish, run_measured  # noqa: E402
 

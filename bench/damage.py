@@ -23,7 +23,7 @@ sys.path.insert(0, str(ROOT / "scripts/lib"))
 import damages  # noqa: E402
 import solids  # noqa: E402
 from bounded import run  # noqa: E402
-from origin import ORIGIN, written_by  # noqa: E402
+from pages.origin import ORIGIN, written_by  # noqa: E402
 
 PAGE = ROOT / "docs/measured/damage.md"
 KINDS = damages.KINDS | damages.MORE

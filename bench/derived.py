@@ -10,7 +10,7 @@ import concurrent.futures
 import pathlib
 import statistics
 
-from origin import written_by
+from pages.origin import written_by
 from status import mesh_and_judge
 
 RUNS = {"automatic": [], "100 k": ["--elements", "100000"]}

@@ -11,7 +11,7 @@ import subprocess
 import sys
 import tempfile
 
-from origin import written_by
+from pages.origin import written_by
 
 ROOT = pathlib.Path(__file__).resolve().parent.parent
 CASES = [  # model, options

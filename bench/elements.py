@@ -10,12 +10,16 @@ import pathlib
 import subprocess
 import tempfile
 
-from origin import written_by
+from pages import tables
+from pages.origin import written_by
+from pages.tables import MEASURED, put, rewrite, spread_by
 
+TARGET_HEAD = ["model", "wanted", "made", "off"]
 MODELS = ["bunny00.off", "elephant.off", "fandisk_large.off", "anchor_dense.off", "armadillo.off", "3torus.off",
           "knot1.off", "rotor.off", "joint.off", "homer.off"]
 COUNTS = [10_000, 100_000, 1_000_000]
-MARKS = ("<!-- elements: begin -->", "<!-- elements: end -->")
+HEAD = ["model", "size", "expected", "made", "off %", "surface edges / wanted", "surface: % within .7-1.4", "volume edges / wanted",
+        "volume: % within .7-1.4"]
 
 
 def mesh(build, model, *options):
@@ -26,26 +30,23 @@ def mesh(build, model, *options):
         return json.loads(report.read_text())
 
 
-def head(titles):
-    return ["| " + " | ".join(titles) + " |", "|" + " --- |" * len(titles)]
-
-
 def targets(build, counts):
-    lines, missed = head(["model", *(f"{n:,} wanted" for n in counts)]), 0
+    rows, missed = [], 0
     for model in MODELS:
-        cells = []
         for n in counts:
             made = mesh(build, model, "--elements", n)["tets"]
             missed += abs(made / n - 1) > 0.15
-            cells.append(f"{made:,} ({100 * (made / n - 1):+.0f} %)")
-        lines.append(f"| {model} | " + " | ".join(cells) + " |")
-        print(lines[-1], flush=True)
-    return [f"`--elements`: {len(MODELS) * len(counts) - missed} of {len(MODELS) * len(counts)} within 15 %.", "", *lines]
+            rows.append([model, f"{n:,}", f"{made:,}", f"{100 * (made / n - 1):+.0f} %"])
+            print(tables.row(rows[-1]), flush=True)
+    return [f"`--elements`: {len(rows) - missed} of {len(rows)} within 15 %.", "", *target_lines(rows)]
+
+
+def target_lines(rows):
+    return [*spread_by("wanted", TARGET_HEAD, rows, TARGET_HEAD[2:]), "", put("elements-wanted", TARGET_HEAD, rows)]
 
 
 def predictions(build, diagonals):
-    lines, missed, runs = head(["model", "size", "expected", "made", "off %", "surface edges / wanted", "% within .7-1.4",
-                                "volume edges / wanted", "% within .7-1.4"]), 0, 0
+    rows, missed = [], 0
     for model in MODELS:
         d = diagonals[model]
         for name, options in (("automatic", []), ("diagonal / 25", ["--size", d / 25]),
@@ -53,13 +54,16 @@ def predictions(build, diagonals):
                               ("diagonal / 25, --max-deviation 0.3 %", ["--size", d / 25, "--max-deviation", d * 0.003])):
             r = mesh(build, model, *options)
             off = 100 * (r["expected_tets"] / r["tets"] - 1)
-            runs, missed = runs + 1, missed + (abs(off) > 15)
+            missed += abs(off) > 15
             s, v = r["surface_edges"], r["volume_edges"]
-            lines.append(f"| {model} | {name} | {r['expected_tets']:,.0f} | {r['tets']:,} | {off:+.0f} | "
-                         f"{s['mean_ratio']:.3f} | {100 * s['share_within_0.7_1.4']:.1f} | {v['mean_ratio']:.3f} | "
-                         f"{100 * v['share_within_0.7_1.4']:.1f} |")
-            print(lines[-1], flush=True)
-    return [f"Prediction before meshing: {runs - missed} of {runs} within 15 %.", "", *lines]
+            rows.append([model, name, f"{r['expected_tets']:,.0f}", f"{r['tets']:,}", f"{off:+.0f}", f"{s['mean_ratio']:.3f}",
+                         f"{100 * s['share_within_0.7_1.4']:.1f}", f"{v['mean_ratio']:.3f}", f"{100 * v['share_within_0.7_1.4']:.1f}"])
+            print(tables.row(rows[-1]), flush=True)
+    return [f"Prediction before meshing: {len(rows) - missed} of {len(rows)} within 15 %.", "", *prediction_lines(rows)]
+
+
+def prediction_lines(rows):
+    return [*spread_by("size", HEAD, rows, HEAD[4:]), "", f"Median, least and most. {put('elements-predicted', HEAD, rows)}"]
 
 
 def main():
@@ -68,13 +72,9 @@ def main():
     parser.add_argument("--fast", action="store_true")
     args = parser.parse_args()
     diagonals = {r["file"]: float(r["bbox_diagonal"]) for r in csv.DictReader(open("bench/models.csv"))}
-    text_lines = [f"{written_by('bench/run.sh elements')}.", "", *predictions(args.build, diagonals), "", *targets(args.build, COUNTS[: 2 if args.fast else 3])]
-    page = pathlib.Path("docs/measured/benchmarks.md")
-    text = page.read_text()
-    if MARKS[0] not in text:
-        text += f"\n## Numbers of elements, and sizes in the volume\n\n{MARKS[0]}\n{MARKS[1]}\n"
-    before, after = text.split(MARKS[0])[0], text.split(MARKS[1])[1]
-    page.write_text(before + MARKS[0] + "\n" + "\n".join(text_lines) + "\n" + MARKS[1] + after)
+    lines = [f"{written_by('bench/run.sh elements')}.", "", *predictions(args.build, diagonals), "", *targets(args.build, COUNTS[: 2 if args.fast else 3])]
+    rewrite(MEASURED / "benchmarks.md", "elements", lines)
 
 
-main()
+if __name__ == "__main__":
+    main()

@@ -13,7 +13,7 @@ import time
 
 sys.path.insert(0, str(pathlib.Path(__file__).resolve().parent))
 import experiments_page  # noqa: E402
-from origin import ORIGIN  # noqa: E402
+from pages.origin import ORIGIN  # noqa: E402
 from peers import surfaces  # noqa: E402
 
 CLEAN = pathlib.Path("models/clean")

@@ -5,7 +5,7 @@ import pathlib
 
 from importlib.machinery import SourceFileLoader
 
-from origin import written_by
+from pages.origin import written_by
 
 METHODS = ["octree-aft", "aft", "octree"]
 CLASSES = ["0 - 0.2", "0.2 - 0.4", "0.4 - 0.6", "0.6 - 0.8", "0.8 - 1"]

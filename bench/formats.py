@@ -5,7 +5,7 @@ import subprocess
 import sys
 import tempfile
 
-from origin import written_by
+from pages.origin import written_by
 
 build, millions = pathlib.Path(sys.argv[1]), sys.argv[2] if len(sys.argv) > 2 else "10"
 with tempfile.TemporaryDirectory(dir=build) as folder:

@@ -8,7 +8,7 @@ import pathlib
 import statistics
 import tempfile
 
-from origin import written_by
+from pages.origin import written_by
 from status import mesh_and_judge
 
 MODELS = ["bunny00.off", "armadillo.off", "couplingdown.off"]

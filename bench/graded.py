@@ -13,7 +13,7 @@ import json
 import pathlib
 import tempfile
 
-from origin import written_by
+from pages.origin import written_by
 from peers import gmsh, surfaces, tetgen
 from peers.process import finish, run_measured
 from volume import evaluate, exponent

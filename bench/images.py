@@ -19,7 +19,7 @@ import tempfile
 BENCH = pathlib.Path(__file__).resolve().parent
 sys.path.insert(0, str(BENCH))
 from dicom_series import write_series  # noqa: E402
-from origin import ORIGIN, written_by  # noqa: E402
+from pages.origin import ORIGIN, written_by  # noqa: E402
 from peers.process import finish, run_measured  # noqa: E402
 
 # Name, file, options, what octafront_judge_image is told.

@@ -18,7 +18,7 @@ import shutil
 import sys
 import tempfile
 
-from origin import written_by
+from pages.origin import written_by
 from peers import gmsh, netgen, surfaces, tetgen
 from peers.process import finish, run_measured
 

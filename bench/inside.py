@@ -12,7 +12,7 @@ import tempfile
 import meshio
 import numpy as np
 
-from origin import written_by
+from pages.origin import written_by
 from peers.process import run_measured
 
 ROOT = pathlib.Path(__file__).resolve().parents[1]

@@ -26,7 +26,7 @@ damage = importlib.util.module_from_spec(spec)
 spec.loader.exec_module(damage)
 import solids  # noqa: E402, from scripts/lib
 from bounded import run  # noqa: E402, from scripts/lib
-from origin import ORIGIN, written_by  # noqa: E402
+from pages.origin import ORIGIN, written_by  # noqa: E402
 
 TOLERANCE = 1e-3          # of the diagonal: the default of --tolerance
 MESH_AT_DAMAGE = 2e-3     # the mesh keeps within the tolerance of what repair moved

@@ -16,7 +16,7 @@ import tempfile
 ROOT = pathlib.Path(__file__).resolve().parents[1]
 sys.path.insert(0, str(ROOT / "scripts/lib"))
 from bounded import run  # noqa: E402
-from origin import written_by  # noqa: E402
+from pages.origin import written_by  # noqa: E402
 
 PAGE = ROOT / "docs/measured/layers.md"
 CASES = [(3, 0.1), (8, 0.1), (3, 0.02), (8, 0.02)]

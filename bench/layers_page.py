@@ -1,7 +1,7 @@
 """Parts of docs/measured/layers.md that commands of their own write, between marks."""
 import pathlib
 
-from origin import written_by
+from pages.origin import written_by
 
 PAGE = pathlib.Path(__file__).resolve().parents[1] / "docs/measured/layers.md"
 

@@ -5,7 +5,7 @@ import subprocess
 import sys
 import tempfile
 
-from origin import written_by
+from pages.origin import written_by
 
 MODELS = {"bunny00": "models/clean/bunny00.off", "anchor": "models/clean/anchor.off"}
 build, elements = pathlib.Path(sys.argv[1]), sys.argv[2] if len(sys.argv) > 2 else "2e6"

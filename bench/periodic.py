@@ -14,7 +14,7 @@ import numpy as np
 
 import sector
 from inside import block, quality, write_off
-from origin import written_by
+from pages.origin import written_by
 from peers.process import run_measured
 
 ROOT = pathlib.Path(__file__).resolve().parents[1]

@@ -10,14 +10,16 @@ import pathlib
 import subprocess
 import tempfile
 
-from origin import written_by
+from pages import tables
+from pages.origin import written_by
+from pages.tables import MEASURED, put, rewrite, spread_by, table
 
 MODELS = ["bunny00.off", "refined_elephant.off", "fandisk_large.off"]
 COUNTS = [100_000, 1_000_000]
-MARKS = ("<!-- pipeline: begin -->", "<!-- pipeline: end -->")
-
-
-BESIDE_MARKS = ("<!-- pipeline beside: begin -->", "<!-- pipeline beside: end -->")
+PAGE = MEASURED / "benchmarks.md"
+HEAD = ["model", "tets", "boundary triangles", "size field s", "surface front s", "triangles/s", "volume front s", "filled tets/s", "improve s",
+        "improved tets/s", "all stages tets/s", "mean β", "min β", "peak bytes/tet"]
+BESIDE_HEAD = ["model", "elements", "size field", "surface front", "volume front", "improve", "all stages", "peak memory", "same mesh"]
 
 
 def run_once(program, model, count):
@@ -45,12 +47,12 @@ def row(model, report, stages):
     tets = report["tets"]
     rate = lambda seconds: f"{tets / seconds / 1e3:,.0f} k" if seconds > 0 else "-"
     surface = stages["surface front"]
-    return "| " + " | ".join([
+    return [
         model, f"{tets:,}", f"{report['boundary_faces']:,}", f"{stages['size field']:.2f}",
         f"{surface:.2f}", f"{report['boundary_faces'] / surface / 1e3:,.0f} k", f"{stages['volume front']:.2f}",
         rate(stages["volume front"]), f"{stages['improve']:.2f}", rate(stages["improve"]), rate(sum(stages.values())),
         f"{report['quality']['beta_mean']:.3f}", f"{report['quality']['beta_min']:.3f}",
-        f"{report['peak_memory_bytes'] / tets:.0f}"]) + " |"
+        f"{report['peak_memory_bytes'] / tets:.0f}"]
 
 
 def ratio_row(model, count, ours, other):
@@ -59,18 +61,16 @@ def ratio_row(model, count, ours, other):
     ratios.append(sum(ours[1].values()) / sum(other[1].values()))
     ratios.append(ours[0]["peak_memory_bytes"] / other[0]["peak_memory_bytes"])
     same = "yes" if ours[0]["hash"] == other[0]["hash"] else "no"
-    return "| " + " | ".join([model, f"{count:,}"] + [f"{r:.2f}" for r in ratios] + [same]) + " |"
+    return [model, f"{count:,}", *(f"{r:.2f}" for r in ratios), same]
 
 
-def table(head):
-    return ["| " + " | ".join(head) + " |", "|" + " --- |" * len(head)]
+def lines_of(rows):
+    shown = [HEAD.index(c) for c in ("model", "tets", "triangles/s", "filled tets/s", "improved tets/s", "all stages tets/s", "mean β", "peak bytes/tet")]
+    return [*table([HEAD[i] for i in shown], [[cells[i] for i in shown] for cells in rows]), "", put("pipeline", HEAD, rows)]
 
 
-def replace(marks, lines):
-    page = pathlib.Path("docs/measured/benchmarks.md")
-    text = page.read_text()
-    before, after = text.split(marks[0])[0], text.split(marks[1])[1]
-    page.write_text(before + marks[0] + "\n" + "\n".join(lines) + "\n" + marks[1] + after)
+def beside_lines(ratios):
+    return [*spread_by("elements", BESIDE_HEAD, ratios, BESIDE_HEAD[2:8]), "", f"Median, least and most. {put('pipeline-beside', BESIDE_HEAD, ratios)}"]
 
 
 def main():
@@ -80,23 +80,20 @@ def main():
     parser.add_argument("--beside", type=pathlib.Path)
     args = parser.parse_args()
     programs = [args.build / "cli/octafront"] + ([args.beside] if args.beside else [])
-    lines = table(["model", "tets", "boundary triangles", "size field s", "surface front s", "triangles/s",
-                   "volume front s", "tets/s", "improve s", "tets/s", "all stages tets/s", "mean β", "min β",
-                   "peak bytes/tet"])
-    ratios = table(["model", "elements", "size field", "surface front", "volume front", "improve", "all stages",
-                    "peak memory", "same mesh"])
+    rows, ratios = [], []
     for model in MODELS:
         for count in COUNTS:
             made = measure(programs, model, count, args.runs)
-            lines.append(row(model, *made[0]))
-            print(lines[-1], flush=True)
+            rows.append(row(model, *made[0]))
+            print(tables.row(rows[-1]), flush=True)
             if args.beside:
                 ratios.append(ratio_row(model, count, *made))
-                print(ratios[-1], flush=True)
+                print(tables.row(ratios[-1]), flush=True)
     said = f"{written_by('bench/run.sh pipeline')}, the least of {args.runs} runs."
-    replace(MARKS, [said, "", *lines])
+    rewrite(PAGE, "pipeline", [said, "", *lines_of(rows)])
     if args.beside:
-        replace(BESIDE_MARKS, [f"{written_by('bench/run.sh pipeline --beside PROGRAM')}.", "", *ratios])
+        rewrite(PAGE, "pipeline beside", [f"{written_by('bench/run.sh pipeline --beside PROGRAM')}.", "", *beside_lines(ratios)])
 
 
-main()
+if __name__ == "__main__":
+    main()

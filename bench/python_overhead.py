@@ -15,7 +15,7 @@ import sys
 import tempfile
 import time
 
-from origin import written_by
+from pages.origin import written_by
 
 CODE = "import octafront, sys; octafront.mesh_file(sys.argv[1], elements=int(sys.argv[2]), threads=int(sys.argv[3]))" \
        ".save(sys.argv[4])"

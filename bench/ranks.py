@@ -13,7 +13,7 @@ import pathlib
 import subprocess
 import tempfile
 
-from origin import ROOT, written_by
+from pages.origin import ROOT, written_by
 
 RANKS_OF_LARGER = 4
 STAGES = ["size field", "surface front", "volume front", "improve", "check"]

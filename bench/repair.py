@@ -19,7 +19,7 @@ import tempfile
 ROOT = pathlib.Path(__file__).resolve().parents[1]
 sys.path.insert(0, str(ROOT / "scripts/lib"))
 from bounded import run  # noqa: E402
-from origin import ORIGIN, written_by  # noqa: E402
+from pages.origin import ORIGIN, written_by  # noqa: E402
 
 PAGE = ROOT / "docs/measured/repair-status.md"
 TOLERANCE = 1e-3   # of the diagonal

@@ -11,7 +11,7 @@ import pathlib
 import statistics
 import subprocess
 
-from origin import written_by
+from pages.origin import written_by
 
 PAGE = pathlib.Path("docs/measured/second-order.md")
 ROWS = PAGE.parent / "rows/second-order.csv"

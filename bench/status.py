@@ -4,6 +4,7 @@ Usage: bench/run.sh status [--only SUBSTRING] [--jobs N] [--timeout SECONDS]
 Each mesh is written to a file and judged by octafront_evaluate, which reads it back.
 """
 import argparse
+import collections
 import concurrent.futures
 import csv
 import json
@@ -12,7 +13,8 @@ import subprocess
 import tempfile
 import time
 
-from origin import written_by
+from pages.origin import written_by
+from pages.tables import put, spread, write
 
 SKULLS = ["skull_119k.off", "skull_204k.off", "skull_534k.off"]  # isosurfaces of CT volumes, only kept
 SKULL_TIMEOUT = 1200
@@ -89,22 +91,16 @@ def skulls(build, only):
     return pairs
 
 
-def line(row, r, need_truth):
+HEAD = ["model", "faces", "result", "tets", "mean β", "min β", "min dihedral °", "Hausdorff % of diagonal", "volume %", "s", "MB"]
+
+
+def cells(row, r, need_truth):
     cells = [row["file"], row["faces"], verdict(r, need_truth)]
     if r["status"] == 0 and not r["defect"]:
         cells += [f"{r['tets']:,}", f"{r['beta_mean']:.3f}", f"{r['beta_min']:.3f}", f"{r['dihedral_min']:.1f}"]
         cells += [f"{r['hausdorff_percent']:.3f}", f"{r['volume_percent']:+.3f}"]
-        cells += [f"{r['seconds']:.1f}", f"{r['report']['peak_memory_bytes'] / 1e6:.0f}"]
-    else:
-        cells += [first_line(r["message"] or str(r.get("defect")))] + [""] * 5 + [f"{r['seconds']:.1f}", ""]
-    return "| " + " | ".join(cells) + " |"
-
-
-def table(pairs, need_truth):
-    head = ["model", "faces", "result", "tets", "mean β", "min β", "min dihedral °", "Hausdorff % of diagonal",
-            "volume %", "s", "MB"]
-    out = ["| " + " | ".join(head) + " |", "|" + " --- |" * len(head)]
-    return out + [line(row, r, need_truth) for row, r in pairs]
+        return cells + [f"{r['seconds']:.1f}", f"{r['report']['peak_memory_bytes'] / 1e6:.0f}"]
+    return cells + [first_line(r["message"] or str(r.get("defect")))] + [""] * 5 + [f"{r['seconds']:.1f}", ""]
 
 
 def rungs(report):
@@ -117,7 +113,11 @@ def rungs(report):
         "yes" if counters.get("filled by recovery of the whole surface") else ""]
 
 
-def kept_line(row, r):
+KEPT_HEAD = ["model", "faces", "result", "tets", "points added", "mean β", "min β", "surface allows β", "β < .1 forced", "beside these", "other",
+             "min dihedral °", "surface allows °", "cavities", "by backtracking", "by kernel points", "by recovery", "whole surface recovered", "s", "MB"]
+
+
+def kept_cells(row, r):
     cells = [row["file"], row["faces"], verdict(r, False)]
     if r["status"] == 0 and not r["defect"]:
         cells += [f"{r['tets']:,}", f"{r['points'] - r['boundary_points']:,}", f"{r['beta_mean']:.3f}"]
@@ -125,31 +125,44 @@ def kept_line(row, r):
         poor = r["poor"]
         cells += [f"{poor['forced']:,}", f"{poor['beside']:,}", f"{poor['all'] - poor['forced'] - poor['beside']:,}"]
         cells += [f"{r['dihedral_min']:.1f}", f"{r['surface_dihedral']:.1f}", *rungs(r["report"])]
-        cells += [f"{r['seconds']:.1f}", f"{r['report']['peak_memory_bytes'] / 1e6:.0f}"]
-    else:
-        cells += [first_line(r["message"] or str(r.get("defect")))] + [""] * 14 + [f"{r['seconds']:.1f}", ""]
-    return "| " + " | ".join(cells) + " |"
+        return cells + [f"{r['seconds']:.1f}", f"{r['report']['peak_memory_bytes'] / 1e6:.0f}"]
+    return cells + [first_line(r["message"] or str(r.get("defect")))] + [""] * 14 + [f"{r['seconds']:.1f}", ""]
 
 
-def kept_table(pairs):
-    head = ["model", "faces", "result", "tets", "points added", "mean β", "min β", "surface allows β",
-            "β < .1 forced", "beside these", "other", "min dihedral °", "surface allows °", "cavities", "by backtracking", "by kernel points", "by recovery",
-            "whole surface recovered", "s", "MB"]
-    return ["| " + " | ".join(head) + " |", "|" + " --- |" * len(head)] + [kept_line(row, r) for row, r in pairs]
+DIRTY_HEAD = ["model", "known defects", "result", "message"]
 
 
-def dirty_table(build, rows, timeout, pool):
+def dirty_rows(build, rows, timeout, pool):
     def job(row):
         return mesh_and_judge(build, pathlib.Path("models/dirty", row["file"]), [], timeout)
 
-    out = ["| model | known defects | result | message |", "| --- | --- | --- | --- |"]
-    counts = {}
+    made = []
     for row, r in zip(rows, pool.map(job, rows)):
-        v = verdict(r, False)
-        counts[v] = counts.get(v, 0) + 1
-        out.append(f"| {row['file']} | {row['defects']} | {v} | {first_line(r['message'], 160)} |")
-        print(f"{row['file']:32} {v:20} {r['seconds']:.1f} s {first_line(r['message'])}", flush=True)
-    return out, counts
+        made.append([row["file"], row["defects"], verdict(r, False), first_line(r["message"], 160)])
+        print(f"{row['file']:32} {made[-1][2]:20} {r['seconds']:.1f} s {made[-1][3]}", flush=True)
+    return made
+
+
+def page(auto, kept, dirty):
+    """Rows of cells: the lines of the page."""
+    valid, good = sum(r[2].startswith("valid") for r in auto), sum(r[2] == "valid" for r in auto)
+    counts = collections.Counter(r[2] for r in dirty)
+    recovered = sum(r[KEPT_HEAD.index("whole surface recovered")] == "yes" for r in kept)
+    return [f"- Automatic size: **{valid} of {len(auto)}** clean models give a valid mesh, {good} of them with both Hausdorff distance and volume "
+            "within 0.5 %.",
+            f"- `--keep-surface`, raw: **{sum(r[2] == 'valid' for r in kept)} of {len(kept)}** valid, with the input triangles as the boundary, one for "
+            f"one; in {recovered} of them all was filled by recovery of the whole surface (docs/how/recovery.md).",
+            f"- Dirty models: {', '.join(f'{n} × {v}' for v, n in sorted(counts.items()))}. Exit 3 is a refusal with a message; what repair can mend is "
+            "meshed.", "",
+            "## Clean models, automatic size", "", *spread(HEAD, auto, HEAD[3:]), "", put("status-automatic", HEAD, auto), "",
+            "## Clean models and CT isosurfaces, surface kept", "",
+            "What the surface allows: the best β of any element inside on its worst triangle, and its smallest angle inside between two triangles. "
+            "Elements below β = .1: on a triangle that allows no better one (*forced*); with an edge of such a triangle, which the same needle makes poor; "
+            "others. Then how many cavities the front left, and which rung of the closing ladder closed how many.", "",
+            *spread(KEPT_HEAD, kept, [c for c in KEPT_HEAD[3:] if not c.startswith("whole")]), "", put("status-kept", KEPT_HEAD, kept), "",
+            "## Dirty models", "",
+            "Known defects: O open, E non-manifold edge, V non-manifold vertex, S self-intersection, R misoriented, I inside out, D degenerate, U unused "
+            f"vertices. {put('status-dirty', DIRTY_HEAD, dirty)}"]
 
 
 def main():
@@ -163,37 +176,13 @@ def main():
     pool = concurrent.futures.ThreadPoolExecutor(args.jobs)
     auto, kept = clean_tables(args.build, [r for r in rows if r["set"] == "clean"], args.timeout, pool)
     kept += skulls(args.build, args.only)
-    dirty, counts = dirty_table(args.build, [r for r in rows if r["set"] == "dirty"], args.timeout, pool)
-
-    good = sum(verdict(r, True) == "valid" for _, r in auto)
-    valid = sum(verdict(r, True).startswith("valid") for _, r in auto)
-    kept_good = sum(verdict(r, False) == "valid" for _, r in kept)
-    summary = [
-        f"- Automatic size: **{valid} of {len(auto)}** clean models give a valid mesh, {good} of them with both "
-        "Hausdorff distance and volume within 0.5 %.",
-        f"- `--keep-surface`, raw: **{kept_good} of {len(kept)}** valid, with the input triangles as the boundary, one "
-        "for one.",
-        f"- Dirty models: {', '.join(f'{n} × {v}' for v, n in sorted(counts.items()))}.",
-    ]
-    print("\n".join(summary))
-    if args.only:
-        return
-    text = ["# Status over all test models", "",
-            f"{written_by('bench/run.sh status')}. Models: `scripts/get-models.sh`. Two at a time, so times are rough. "
-            "Every file is read back and judged by `bench/evaluate.cpp`: validity by exact signs, two-sided "
-            "Hausdorff distance to the input by sampling, volume against the enclosed volume of the input.", "",
-            *summary, "", "## Clean models, automatic size", "", *table(auto, True), "",
-            "## Clean models and CT isosurfaces, surface kept", "",
-            "The input triangles are the boundary, compared one by one. What the surface allows: the best β of any "
-            "element inside on its worst triangle, and its smallest angle inside between two triangles. Elements below "
-            "β = .1: on a triangle that allows no better one; with an edge of such a triangle, which the same needle "
-            "makes poor; others. Then how many cavities "
-            "the front left, which rung of the closing ladder closed how many, and whether all was filled by recovery "
-            "of the whole surface instead (docs/how/recovery.md).", "", *kept_table(kept), "", "## Dirty models", "",
-            "O open, E non-manifold edge, V non-manifold vertex, S self-intersection, R misoriented, I inside out, "
-            "D degenerate, U unused vertices. Exit 3 is a refusal with a message, of which the first line is shown; "
-            "what repair can mend is meshed.", "", *dirty, ""]
-    pathlib.Path("docs/measured/status.md").write_text("\n".join(text))
+    dirty = dirty_rows(args.build, [r for r in rows if r["set"] == "dirty"], args.timeout, pool)
+    if not args.only:
+        write("status", ["# Status over all test models", "",
+                         f"{written_by('bench/run.sh status')}. Models: `scripts/get-models.sh`. Two at a time, so times are rough. Every file is read "
+                         "back and judged by `bench/evaluate.cpp`: validity by exact signs, two-sided Hausdorff distance to the input by sampling, volume "
+                         "against the enclosed volume of the input.", "",
+                         *page([cells(row, r, True) for row, r in auto], [kept_cells(row, r) for row, r in kept], dirty)])
 
 
 if __name__ == "__main__":

@@ -1,7 +1,7 @@
 """Surface meshes of every clean model at automatic size and two uniform sizes, side by side with other remeshers.
 
 Usage: bench/run.sh surface [--only SUBSTRING] [--jobs N] [--skip-peers]
-Writes docs/measured/surface-status.md and the tables marked "surface" in docs/measured/benchmarks.md. Every surface is judged by
+Writes docs/measured/surface-status.md. Every surface is judged by
 octafront_judge_surface; those of Gmsh, Netgen and CGAL, where they are installed, by the same program.
 """
 import argparse
@@ -14,7 +14,8 @@ import resource
 import subprocess
 import tempfile
 
-from origin import written_by
+from pages.origin import written_by
+from pages.tables import put, row, spread_by, table, write
 
 SETTINGS = [("automatic", None), ("diagonal / 40", 40), ("diagonal / 100", 100)]
 SPEED_MODELS = ["bunny00.off", "elephant.off", "fandisk_large.off", "anchor_dense.off", "armadillo.off", "3torus.off"]
@@ -25,7 +26,6 @@ PEER_MODELS = ["bunny00.off", "elephant.off", "fandisk_large.off", "anchor_dense
 PEER_DIVISOR = 80
 PEER_TIMEOUT = 120
 MEAN_TARGET = {"automatic": 0.97}
-MARKS = ("<!-- surface: begin -->", "<!-- surface: end -->")
 
 
 def judge(build, model, *arguments, timeout=300):
@@ -57,20 +57,16 @@ def misses(r, name):
 
 def row_of(file, r, name):
     if r["defect"]:
-        return f"| {file} | {' '.join(misses(r, name))} |" + " |" * 8
-    return "| " + " | ".join([
-        file, f"{r['triangles']:,}", f"{r['hausdorff_percent']:.3f}", f"{r['edge_ratio']:.3f}",
+        return [file, name, " ".join(misses(r, name)), *[""] * 8]
+    return [
+        file, name, f"{r['triangles']:,}", f"{r['hausdorff_percent']:.3f}", f"{r['edge_ratio']:.3f}",
         f"{100 * r['edges_within']:.1f}", f"{r['quality_mean']:.3f}", f"{r['quality_min_free']:.2f}",
         f"{r['quality_min']:.2f}", f"{r['straight_lines'] - r['straight_lines_missing']} of {r['straight_lines']}",
-        ", ".join(misses(r, name)) or "-"]) + " |"
+        ", ".join(misses(r, name)) or "-"]
 
 
-HEAD = ["model", "triangles", "Hausdorff % of diagonal", "edge length / wanted", "% within .7-1.4", "mean 2r/R",
+HEAD = ["model", "size", "triangles", "Hausdorff % of diagonal", "edge length / wanted", "% within .7-1.4", "mean 2r/R",
         "least, not forced", "least of all", "straight lines kept", "missed"]
-
-
-def head(titles):
-    return ["| " + " | ".join(titles) + " |", "|" + " --- |" * len(titles)]
 
 
 def summary_row(name, results):
@@ -81,10 +77,8 @@ def summary_row(name, results):
             missed[word] = missed.get(word, 0) + 1
     n = len(results)
     count = lambda word: str(len(good) - missed.get(word, 0))
-    return "| " + " | ".join([name, str(n), str(len(good)), count("lines"),
-                              count("Hausdorff") if name == "automatic" else "-", count("length"), count("within"),
-                              count("mean"), count("least"),
-                              f"{sum(r['quality_mean'] for r in good) / max(1, len(good)):.3f}"]) + " |"
+    return [name, n, len(good), count("lines"), count("Hausdorff") if name == "automatic" else "-", count("length"), count("within"), count("mean"),
+            count("least"), f"{sum(r['quality_mean'] for r in good) / max(1, len(good)):.3f}"]
 
 
 SUMMARY = ["size", "models", "checks passed", "straight lines kept", "Hausdorff ≤ .5 %", "length/wanted .97-1.03",
@@ -92,7 +86,7 @@ SUMMARY = ["size", "models", "checks passed", "straight lines kept", "Hausdorff 
 
 
 def all_models(build, rows, pool):
-    tables, summary = [], head(SUMMARY)
+    each, summary = [], []
     for name, divisor in SETTINGS:
         def job(row):
             size = [] if divisor is None else ["--size", float(row["bbox_diagonal"]) / divisor]
@@ -101,9 +95,8 @@ def all_models(build, rows, pool):
             return r
         results = list(pool.map(job, rows))
         summary.append(summary_row(name, results))
-        tables += ["", f"## Size: {name}", "", *head(HEAD),
-                   *(row_of(row["file"], r, name) for row, r in zip(rows, results))]
-    return summary, tables
+        each += [row_of(row["file"], r, name) for row, r in zip(rows, results)]
+    return summary, each
 
 
 def quickest(build, file, triangles):
@@ -116,7 +109,7 @@ def quickest(build, file, triangles):
 
 def growth(build, rows):
     """How the time grows with the number of triangles: the exponent of the power law that fits best."""
-    lines = head(["model", *(f"{n:,}" for n in GROWTH_TRIANGLES), "time grows as triangles to the power"])
+    made = []
     for file in GROWTH_MODELS:
         if not any(row["file"] == file for row in rows):
             continue
@@ -127,23 +120,26 @@ def growth(build, rows):
             cells.append(f"{seconds:.2f} s")
         mx, my = (sum(p[i] for p in points) / len(points) for i in (0, 1))
         power = sum((x - mx) * (y - my) for x, y in points) / sum((x - mx) ** 2 for x, _ in points)
-        lines.append(f"| {file} | " + " | ".join(cells) + f" | {power:.2f} |")
-        print(lines[-1], flush=True)
-    return lines
+        made.append([file, *cells, f"{power:.2f}"])
+        print(row(made[-1]), flush=True)
+    return made
+
+
+SPEED = ["model", "input triangles", "triangles made", "size field CPU s", "surface front CPU s", "triangles per CPU second",
+         "share of the size field %"]
+GROWTH = ["model", *(f"{n:,}" for n in GROWTH_TRIANGLES), "time grows as triangles to the power"]
 
 
 def speed(build, rows):
-    lines = head(["model", "input triangles", "triangles made", "size field CPU s", "surface front CPU s",
-                  "triangles per CPU second", "share of the size field %"])
+    made = []
     for file in SPEED_MODELS:
         if not any(row["file"] == file for row in rows):
             continue
         r, seconds = quickest(build, file, SPEED_TRIANGLES)
-        lines.append(f"| {file} | {r['input_triangles']:,} | {r['triangles']:,} | {r['size_seconds']:.2f} | "
-                     f"{r['front_seconds']:.2f} | {r['triangles'] / seconds / 1000:.0f} k | "
-                     f"{100 * r['size_seconds'] / seconds:.0f} |")
-        print(lines[-1], flush=True)
-    return lines
+        made.append([file, f"{r['input_triangles']:,}", f"{r['triangles']:,}", f"{r['size_seconds']:.2f}", f"{r['front_seconds']:.2f}",
+                     f"{r['triangles'] / seconds / 1000:.0f} k", f"{100 * r['size_seconds'] / seconds:.0f}"])
+        print(row(made[-1]), flush=True)
+    return made
 
 
 def cpu_seconds(command, folder):
@@ -188,27 +184,29 @@ PEERS = [("Gmsh, classified and remeshed", make_with_gmsh), ("Netgen, STL mesher
          ("CGAL, isotropic remeshing", make_with_cgal)]
 
 
+PEER_HEAD = ["model", "remesher", "checks", "triangles", "CPU s", "Hausdorff %", "edge length / wanted", "% within .7-1.4", "mean 2r/R", "least 2r/R"]
+
+
 def peers(build, rows):
     build_cgal(build)
-    lines = head(["model", "remesher", "checks", "triangles", "CPU s", "Hausdorff %", "edge length / wanted",
-                  "% within .7-1.4", "mean 2r/R", "least 2r/R"])
+    made_by_all = []
 
     def add(file, name, r, seconds):
         if "triangles" not in r:
-            lines.append(f"| {file} | {name} | {r['defect'][:80].replace('|', '/')} |" + " |" * 7)
+            made_by_all.append([file, name, r["defect"][:80], *[""] * 7])
         else:
-            lines.append("| " + " | ".join([
-                file, name, (r["defect"] or "passed")[:60].replace("|", "/"), f"{r['triangles']:,}", f"{seconds:.2f}",
+            made_by_all.append([
+                file, name, (r["defect"] or "passed")[:60], f"{r['triangles']:,}", f"{seconds:.2f}",
                 f"{r['hausdorff_percent']:.3f}", f"{r['edge_ratio']:.3f}", f"{100 * r['edges_within']:.1f}",
-                f"{r['quality_mean']:.3f}", f"{r['quality_min']:.2f}"]) + " |")
-        print(lines[-1], flush=True)
+                f"{r['quality_mean']:.3f}", f"{r['quality_min']:.2f}"])
+        print(row(made_by_all[-1]), flush=True)
 
-    for row in rows:
-        file = row["file"]
+    for model_row in rows:
+        file = model_row["file"]
         if file not in PEER_MODELS:
             continue
         model = pathlib.Path("models/clean", file).resolve()
-        size = float(row["bbox_diagonal"]) / PEER_DIVISOR
+        size = float(model_row["bbox_diagonal"]) / PEER_DIVISOR
         with tempfile.TemporaryDirectory() as folder:
             r = judge(build, model, "--size", size)
             add(file, "Octafront", r, r.get("size_seconds", 0) + r.get("front_seconds", 0))
@@ -221,6 +219,23 @@ def peers(build, rows):
                     add(file, name, {"defect": "made nothing: an error, a crash or no end"}, 0)
                 else:
                     add(file, name, judge(build, model, "--size", size, "--made", path), seconds)
+    return made_by_all
+
+
+ABOUT = ("*Forced* are triangles with a corner between two feature edges that enclose less than 13°, with a feature edge shorter than .35 of the size, or "
+         "between two lines that run side by side nearer than .08 of the size asked for: details finer than the size. Straight lines count from 4 sizes on.")
+
+
+def page(summary, each, rates, growths, compared):
+    """Rows of cells: the lines of the page."""
+    lines = ["How many of the models reach each target:", "", *table(SUMMARY, summary), "",
+             *spread_by("size", HEAD, each, HEAD[2:8]), "", f"Median, least and most. {put('surface-status', HEAD, each)}", "",
+             f"Speed at {SPEED_TRIANGLES:,} triangles, one thread:", "", *table(SPEED, rates), "",
+             "CPU seconds of size field and surface front by the number of triangles:", "", *table(GROWTH, growths)]
+    if compared:
+        lines += ["", f"{len({r[0] for r in compared})} of the models at diagonal / {PEER_DIVISOR} by others too, one thread, judged by the same program (CPU seconds of "
+                  "theirs include reading and writing files):", "", *spread_by("remesher", PEER_HEAD, compared, PEER_HEAD[3:]), "",
+                  put("surface-peers", PEER_HEAD, compared)]
     return lines
 
 
@@ -233,31 +248,14 @@ def main():
     args = parser.parse_args()
     rows = [r for r in csv.DictReader(open("bench/models.csv")) if r["set"] == "clean" and args.only in r["file"]]
     with concurrent.futures.ThreadPoolExecutor(args.jobs) as pool:
-        summary, tables = all_models(args.build, rows, pool)
-    print("\n".join(summary))
+        summary, each = all_models(args.build, rows, pool)
+    print("\n".join(table(SUMMARY, summary)))
     rates, growths = speed(args.build, rows), growth(args.build, rows)
     compared = [] if args.skip_peers else peers(args.build, rows)
-    if args.only:
-        print("\n".join(tables))
-        return
-    note = (f"{written_by('bench/run.sh surface')}. *Forced* are triangles with a corner between two feature edges that "
-            "enclose less than 13°, with a feature edge shorter than .35 of the size, or between two lines that run side "
-            "by side nearer than .08 of the size asked for: details finer than the size. Straight lines count from 4 "
-            "sizes on.")
-    pathlib.Path("docs/measured/surface-status.md").write_text(
-        "\n".join(["# Surface meshes of all clean models", "", note, "", *summary, *tables, ""]))
-    page = pathlib.Path("docs/measured/benchmarks.md")
-    text = page.read_text()
-    if MARKS[0] not in text:
-        text += f"\n## Surfaces\n\n{MARKS[0]}\n{MARKS[1]}\n"
-    middle = [f"{written_by('bench/run.sh surface')}; model by model: `docs/measured/surface-status.md`. How many of the models reach each target:",
-              "", *summary, "", f"Speed at {SPEED_TRIANGLES:,} triangles, one thread:", "", *rates,
-              "", "CPU seconds of size field and surface front by the number of triangles:", "", *growths]
-    if compared:
-        middle += ["", f"The same models at diagonal / {PEER_DIVISOR} by others, one thread, judged by the same program "
-                   "(CPU seconds of theirs include reading and writing files):", "", *compared]
-    before, after = text.split(MARKS[0])[0], text.split(MARKS[1])[1]
-    page.write_text(before + MARKS[0] + "\n" + "\n".join(middle) + "\n" + MARKS[1] + after)
+    if not args.only:
+        write("surface-status", ["# Surface meshes of all clean models", "",
+                                 f"{written_by('bench/run.sh surface')}. {ABOUT}", "", *page(summary, each, rates, growths, compared)])
 
 
-main()
+if __name__ == "__main__":
+    main()

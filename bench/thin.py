@@ -13,7 +13,7 @@ import sys
 import tempfile
 
 sys.path.insert(0, str(pathlib.Path(__file__).resolve().parent))
-from origin import written_by  # noqa: E402
+from pages.origin import written_by  # noqa: E402
 from peers import gmsh, tetgen  # noqa: E402
 from peers.process import finish, run_measured  # noqa: E402
 from peers.surfaces import write_off  # noqa: E402

@@ -12,7 +12,7 @@ import pathlib
 import subprocess
 import tempfile
 
-from origin import ROOT, written_by
+from pages.origin import ROOT, written_by
 
 STAGES = ["repair", "detail", "features", "size field", "surface front", "volume front", "improve", "check"]
 REST = "reading, writing"

@@ -16,7 +16,7 @@ import pathlib
 import tempfile
 import time
 
-from origin import written_by
+from pages.origin import written_by
 from peers import gmsh, netgen, tetgen
 from peers.process import finish, run_measured
 

@@ -15,7 +15,7 @@ import sys
 
 ROOT = pathlib.Path(__file__).resolve().parent.parent
 sys.path.append(str(ROOT / "bench"))
-from origin import written_by  # noqa: E402
+from pages.origin import written_by  # noqa: E402
 
 TOUCHED = "## What an edit costs"  # of scripts/touched.py, to the page's end
 INCLUDE = re.compile(r'^\s*#\s*include\s*"([^"]+)"', re.M)

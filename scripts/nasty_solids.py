@@ -27,7 +27,7 @@ ROOT = pathlib.Path(__file__).resolve().parents[1]
 sys.path[:0] = [str(ROOT / "scripts/lib"), str(ROOT / "bench")]
 import nasty_solids as solids
 import thin_solids
-from origin import written_by
+from pages.origin import written_by
 
 OCTAFRONT = os.environ.get("OCTAFRONT", str(ROOT / "build/release/cli/octafront"))
 PAGE = ROOT / "docs/measured/nasty-solids.md"

@@ -34,6 +34,6 @@ case ${1:-} in
     ;;
   *)
     python3 examples/solve/solve.py "$octafront" "$work" "$@"
-    PYTHONPATH=bench python3 -c 'import origin; print(f"For docs/measured/solved.md: Measured by `scripts/solve.sh` ({origin.ORIGIN})")'
+    PYTHONPATH=bench python3 -c 'from pages import origin; print(f"For docs/measured/solved.md: Measured by `scripts/solve.sh` ({origin.ORIGIN})")'
     ;;
 esac

@@ -16,7 +16,7 @@ import time
 
 ROOT = pathlib.Path(__file__).resolve().parent.parent
 sys.path.append(str(ROOT / "bench"))
-from origin import written_by  # noqa: E402
+from pages.origin import written_by  # noqa: E402
 
 HEADERS = ["include/octafront/tet_mesh.h", "include/octafront/surface_mesh.h"]
 OPTIONS = ["-DOCTAFRONT_UNITY=OFF", "-DOCTAFRONT_PCH=ON", "-DOCTAFRONT_BUILD_TESTS=OFF", "-DOCTAFRONT_BUILD_EXAMPLES=OFF",

@@ -7,7 +7,7 @@
 What holds:
 - docs/README.md links to every page of docs/.
 - Each page of docs/measured, and each part of others that a command wrote, says "Written by `COMMAND` (commit ..., date,
-  machine" as bench/origin.py does, or "Measured by" where the figures were put on the page by hand; the script that the
+  machine" as bench/pages/origin.py does, or "Measured by" where the figures were put on the page by hand; the script that the
   command begins with exists.
 - Links, pictures and anchors of pages lead somewhere; so do paths in backticks that begin with a folder of the project.
 - Workflows and .ci/run call scripts that are there.

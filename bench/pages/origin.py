@@ -4,7 +4,7 @@ import pathlib
 import platform
 import subprocess
 
-ROOT = pathlib.Path(__file__).resolve().parents[1]
+ROOT = pathlib.Path(__file__).resolve().parents[2]
 MEASURED = ("src", "include", "cli", "bench")  # what figures depend on: a page written before this one does not count
 
 
