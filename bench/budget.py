@@ -1,11 +1,13 @@
 """Meshes models at automatic size, and writes docs/measured/budget-status.md: the budget of elements, what was made of it, how long
 that took, and what was given up.
 
-Usage: bench/run.sh budget [--only SUBSTRING] [--timeout CPU_SECONDS] [--before PROGRAM] [--gmsh] [--output FILE.md] [FOLDER_OR_FILE ...]
+Usage: bench/run.sh budget [--only SUBSTRING] [--timeout CPU_SECONDS] [--before PROGRAM] [--gmsh] [--page NAME] [--title TITLE]
+                           [FOLDER_OR_FILE ...]
 Without folders: models/clean, models/dirty, and models/derived where there is one. One model at a time, on one thread.
 --before: another octafront on the same models. --gmsh: Gmsh on CAD files, as its users run it, with 12 elements a turn.
 """
 import argparse
+import collections
 import json
 import pathlib
 import resource
@@ -15,6 +17,7 @@ import subprocess
 import tempfile
 
 from pages.origin import written_by
+from pages.tables import put, spread, worst, write
 from peers.process import run_measured
 
 CAD = (".step", ".stp", ".brep", ".iges", ".igs")
@@ -80,11 +83,30 @@ def beside(rows, key, name):
             f"CPU seconds {statistics.median(cpu):.2f} times in the median."]
 
 
-def page(rows, failed, command):
+HEAD = ["model", "triangles", "budget", "said", "made", "before", "Gmsh", "least β", "least angle", "rounds", "work", "CPU s", "MB", "given up"]
+
+
+def cells(r):
+    before, other = (f"{r[key][0]:,}" if r.get(key) else "" for key in ("before", "gmsh"))
+    return [r["model"], f"{r['faces']:,}", f"{r['budget']:,.0f}", f"{r['said']:,.0f}", f"{r['tets']:,}", before, other, f"{r['beta']:.3f}", f"{r['angle']:.1f}",
+            r["rounds"], f"{r['work']:.1f}", f"{r['cpu']:.1f}", f"{r['memory'] / 1e6:.0f}", given_up(r)]
+
+
+def tables(name, rows, failed):
+    """Rows of cells, and (model, why) of those that were not meshed."""
+    refused = collections.defaultdict(list)
+    for model, why in failed:
+        refused[why].append(model)
+    lines = [*spread(HEAD, rows, HEAD[1:-1]), "", put(name, HEAD, rows), "", "Least angles:", "",
+             *worst(HEAD, rows, "least angle", ["model", "triangles", "made", "least β", "least angle", "CPU s"])]
+    return lines + (["", "Not meshed:", "", *(f"- {why}: {', '.join(models)}" for why, models in sorted(refused.items()))] if failed else [])
+
+
+def page(options, rows, failed, command):
     over = [r for r in rows if r["budget"] and r["tets"] > OVER * r["budget"]]
     off = [r for r in rows if abs(r["said"] / r["tets"] - 1) > OVER - 1]
     lines = [
-        "# The budget of automatic sizes", "",
+        f"# {options.title}", "",
         f"{written_by(command)}, one model at a time on one thread; what the budget is: "
         "`docs/how/sizes-and-surface.md`. *Said* is the prediction once the surface is made, which is what `--dry-run` "
         "says; *least β* and *least angle* (dihedral, degrees) are of the worst element, forced by the input or not; "
@@ -98,15 +120,7 @@ def page(rows, failed, command):
         f"Least angle: {sum(r['angle'] < 5 for r in rows)} models below 5°, {sum(r['angle'] < 15 for r in rows)} below 15°, "
         f"{statistics.median(r['angle'] for r in rows):.1f}° in the median."]
     lines += beside(rows, "before", "the program before") + beside(rows, "gmsh", "Gmsh with 12 elements a turn")
-    lines += ["", "| model | triangles | budget | said | made | before | Gmsh | least β | least angle | rounds | work | CPU s | MB | given up |",
-              "| --- | --- | --- | --- | --- | --- | --- | --- | --- | --- | --- | --- | --- | --- |"]
-    for r in rows:
-        before, other = (f"{r[key][0]:,}" if r.get(key) else "" for key in ("before", "gmsh"))
-        lines.append(f"| {r['model']} | {r['faces']:,} | {r['budget']:,.0f} | {r['said']:,.0f} | {r['tets']:,} | {before} | {other} | "
-                     f"{r['beta']:.3f} | {r['angle']:.1f} | {r['rounds']} | {r['work']:.1f} | {r['cpu']:.1f} | {r['memory'] / 1e6:.0f} | {given_up(r)} |")
-    if failed:
-        lines += ["", "Not meshed:", ""] + [f"- {name}: {why}" for name, why in failed]
-    return "\n".join(lines) + "\n"
+    return [*lines, "", *tables(options.page, [cells(r) for r in rows], failed)]
 
 
 def models(paths):
@@ -120,12 +134,13 @@ def main():
     parser.add_argument("paths", nargs="*")
     parser.add_argument("--only", default="")
     parser.add_argument("--timeout", type=int, default=300)
-    parser.add_argument("--output", default="docs/measured/budget-status.md", type=pathlib.Path)
+    parser.add_argument("--page", default="budget-status", help="which page of docs/measured is written")
+    parser.add_argument("--title", default="The budget of automatic sizes")
     parser.add_argument("--before", type=pathlib.Path)
     parser.add_argument("--gmsh", action="store_true")
     options = parser.parse_args()
     paths = options.paths or [f for f in ("models/clean", "models/dirty", "models/derived") if pathlib.Path(f).is_dir()]
-    command = " ".join(["bench/run.sh budget", *options.paths])
+    command = " ".join(["bench/run.sh budget", *(["--page", options.page] if options.page != "budget-status" else []), *options.paths])
     rows, failed = [], []
     for model in models(paths):
         if options.only not in model.name:
@@ -143,7 +158,8 @@ def main():
                 rows[-1]["gmsh"] = gmsh(model, options.timeout)
             print(f"{model.name:32} {rows[-1]['tets']:>10,} of {rows[-1]['budget']:>10,.0f} {rows[-1]['cpu']:6.1f} s "
                   f"{given_up(rows[-1])}", flush=True)
-        options.output.write_text(page(rows, failed, command) if rows else "")
+        if rows and not options.only:
+            write(options.page, page(options, rows, failed, command))
 
 
 if __name__ == "__main__":

@@ -19,6 +19,7 @@ import tempfile
 sys.path.insert(0, str(pathlib.Path(__file__).resolve().parent))
 import cad_names  # noqa: E402
 import cad_page  # noqa: E402
+from pages import tables  # noqa: E402
 from pages.origin import ORIGIN  # noqa: E402
 from peers import netgen  # noqa: E402
 from peers.process import finish, run_measured  # noqa: E402
@@ -158,7 +159,7 @@ def campaign(a, kept, file, others):
         kept.files[file.name] = info_of((a.build / "cli/octafront").resolve(), file, a.timeout)
     info = kept.files[file.name]
     if "why" in info:
-        print(cad_page.refused_row(file.name, info), flush=True)
+        print(tables.row(cad_page.refused_row(file.name, info)), flush=True)
         return
     own = [] if a.peers_alone else [(40, "ours")] + [(100, "ours")] * a.fine
     for part, who in own + [(40, peer) for peer in PEERS] * (a.peers or a.peers_alone):
@@ -168,7 +169,7 @@ def campaign(a, kept, file, others):
         made = (ours(a.build, file, info, part, a.timeout, NODES_OF_OTHERS if others else 0) if who == "ours" else
                 PEERS[who](a.build, file, info, a.timeout))
         kept.runs[key] = {"file": file.name, "who": who, "part": part, "origin": ORIGIN if who == "ours" else peers_origin(), **made}
-        print(cad_page.row(kept.runs[key], info), flush=True)
+        print(tables.row(cad_page.row(kept.runs[key], info)), flush=True)
 
 
 def main():
@@ -190,9 +191,10 @@ def main():
         if a.only in file.name:
             campaign(a, kept, file, others)
             kept.save()
-    print("\n".join(cad_page.summaries(kept)))
+    print("\n".join(tables.table(cad_page.SUMMARY, cad_page.summaries(kept))))
     if a.page:
         cad_page.write(sets["debian"], sets["others"], a.timeout)
 
 
-main()
+if __name__ == "__main__":
+    main()

@@ -5,8 +5,8 @@ import re
 import statistics
 
 from pages.origin import written_by
+from pages.tables import put, table, write as write_page
 
-PAGE = pathlib.Path("docs/measured/cad.md")
 TEXT = pathlib.Path(__file__).resolve().parent / "cad.md.in"
 MESHERS = ("ours", "Gmsh", "Gmsh's HXT", "Netgen")
 ORDER = {40: 1, 100: 2}
@@ -22,7 +22,7 @@ def faces_left_out(log):
 
 
 def without_folders(sentence):
-    return re.sub(r"/\S*/", "", sentence).replace("|", "\\|")
+    return re.sub(r"/\S*/", "", sentence)
 
 
 def number(made, key, form):
@@ -67,11 +67,11 @@ def row(made, info):
     else:
         cells = [*start, f"{made['tets']:,}", number(made, "off", "+.3f"), number(made, "area", "+.3f"), number(made, "box", ".3f"),
                  astray(made), f"{made['beta']:.3f}, {made['least']:.3f}", f"{made['angle']:.1f}", narrow(made), f"{made['cpu']:.1f}"]
-    return "| " + " | ".join(cells) + " |"
+    return cells
 
 
 def refused_row(name, info):
-    return f"| {name} | {without_folders(info['why'])} |"
+    return [name, without_folders(info["why"])]
 
 
 def within(values, most):
@@ -84,47 +84,47 @@ def all_faces(made, info):
     return made["patches"] + max(made["closed"] + made["loose"], made["without"]) >= info["faces"]
 
 
-def judged_in_words(done, files):
+SUMMARY = ("files, diagonal", "meshed", "volume within .1 %", "1 %", "area within .2 %", "box within .1 %", "regions", "groups", "nodes off", "poor, forced",
+           "least angle: median", "below 10°", "mean beta", "elements", "CPU s")
+
+
+def judged_cells(done, files):
+    """What only octafront_judge_cad says."""
     judged = [m for m in done if "area" in m]
     if not judged:
-        return ""
+        return [""] * 6
     info = [files[m["file"]] for m in judged]
-    regions = sum(m["regions"] == len(i["solids"]) for m, i in zip(judged, info))
-    astray = sum(m["astray"] > 0 for m in judged)
     poor = [m for m in judged if m["poor"]["elements"]]
-    return (f"; worst area within .2 % in {within([m['area'] for m in judged], .2)}; box within .1 % of the diagonal in "
-            f"{within([m['box'] for m in judged], .1)}; a region for each solid in {regions}, "
-            f"a group for each face that was not left out in {sum(map(all_faces, judged, info))} of {len(judged)}; off the geometry are "
-            f"{sum(m['astray'] for m in judged):,} of {sum(m['nodes'] for m in judged):,} nodes of the boundary, in {astray} files; "
-            f"elements below beta .2 or 10 degrees in {len(poor)} files, in {sum(m['poor']['unforced'] == 0 for m in poor)} of them forced by "
-            "the shape wherever they were looked at")
+    return [within([m["area"] for m in judged], .2), within([m["box"] for m in judged], .1),
+            str(sum(m["regions"] == len(i["solids"]) for m, i in zip(judged, info))), f"{sum(map(all_faces, judged, info))} of {len(judged)}",
+            f"{sum(m['astray'] for m in judged):,} of {sum(m['nodes'] for m in judged):,} ({sum(m['astray'] > 0 for m in judged)})",
+            f"{len(poor)}, {sum(m['poor']['unforced'] == 0 for m in poor)}"]
 
 
 def summary(name, runs, files):
     done = [m for m in runs if "error" not in m]
     if not done:
-        return f"- {name}: none of {len(runs)}."
+        return [name, f"none of {len(runs)}", *[""] * 13]
     off = [m["off"] for m in done]
-    return (f"- {name}: {len(done)} of {len(runs)} meshed; worst volume within .1 % in {within(off, .1)}, within 1 % in {within(off, 1)}; smallest "
-            f"angle in the median {statistics.median(m['angle'] for m in done):.1f} degrees, below 10 in {sum(m['angle'] < 10 for m in done)}"
-            f"{judged_in_words(done, files)}; mean beta {statistics.mean(m['beta'] for m in done):.3f}; {sum(m['tets'] for m in done):,} elements, "
-            f"{sum(m['cpu'] for m in runs):.0f} CPU s.")
+    return [name, f"{len(done)} of {len(runs)}", within(off, .1), within(off, 1), *judged_cells(done, files),
+            f"{statistics.median(m['angle'] for m in done):.1f}", str(sum(m["angle"] < 10 for m in done)), f"{statistics.mean(m['beta'] for m in done):.3f}",
+            f"{sum(m['tets'] for m in done):,}", f"{sum(m['cpu'] for m in runs):.0f}"]
 
 
 def runs_of(kept, who, part):
     return [m for m in kept.runs.values() if m["who"] == who and m["part"] == part]
 
 
-def summaries(kept):
+def summaries(kept, whose=""):
     asked = [(who, part) for who in MESHERS for part in ORDER]
-    return [summary(f"{who}, diagonal / {part}", runs_of(kept, who, part), kept.files) for who, part in asked if runs_of(kept, who, part)]
+    return [summary(f"{whose}{who}, {part}", runs_of(kept, who, part), kept.files) for who, part in asked if runs_of(kept, who, part)]
 
 
 def misses(kept, part=100):
     """Which files miss what is asked for of second order at a hundredth: no mesh, volume, area, box, poor elements, nodes."""
     runs = runs_of(kept, "ours", part)
     if not runs:
-        return ["- not run."]
+        return {}
     done = [m for m in runs if "area" in m]
     found = {
         "no mesh": [m for m in runs if "error" in m],
@@ -135,7 +135,14 @@ def misses(kept, part=100):
         "poor elements that the shape does not force": [m for m in done if m["poor"]["unforced"]],
         "more than a thousandth of the boundary's nodes off the geometry": [m for m in done if m["astray"] > 1e-3 * m["nodes"]],
     }
-    return [f"- {what}: {', '.join(m['file'] for m in sorted(runs, key=lambda m: m['file'])) or 'none'}." for what, runs in found.items()]
+    return {what: sorted(m["file"] for m in runs) for what, runs in found.items()}
+
+
+def misses_in_words(debian, others):
+    """A line for each kind, the files of both sets."""
+    names = {what: debian.get(what, []) + others.get(what, []) for what in [*debian, *others]}
+    return [*(f"- {what}: {', '.join(files)}." for what, files in names.items() if files),
+            f"- none: {'; '.join(what for what, files in names.items() if not files) or '-'}."]
 
 
 def name_counts(made, kind):
@@ -144,13 +151,16 @@ def name_counts(made, kind):
     return " / ".join(str(n) for n, _ in found) if found else ""
 
 
-def names_table(kept):
+NAMES = ("file", "names of", "in the file", "ours: .msh / .inp", *MESHERS[1:])
+
+
+def names_rows(kept):
     """One row for each kind of name of a file."""
-    rows = ["| file | names of | in the file | ours: .msh / .inp | " + " | ".join(MESHERS[1:]) + " |", "| --- " * 7 + "|"]
+    rows = []
     for file in sorted(kept.files):
         runs = {who: kept.runs.get(f"{file}|{who}|40", {}) for who in MESHERS}
         for kind, (_, wanted) in runs["ours"].get("names", {}).get("msh", {}).items():
-            rows.append(f"| {file} | {kind} | {wanted} | " + " | ".join(name_counts(runs[who], kind) for who in MESHERS) + " |")
+            rows.append([file, kind, wanted, *(name_counts(runs[who], kind) for who in MESHERS)])
     return rows
 
 
@@ -166,11 +176,14 @@ def names_in_words(kept):
 def rows_of(kept):
     order = {(who, part): n for n, (who, part) in enumerate([("ours", 40), ("ours", 100)] + [(who, 40) for who in MESHERS[1:]])}
     runs = sorted(kept.runs.values(), key=lambda m: (m["file"], order[m["who"], m["part"]]))
-    return ["| " + " | ".join(COLUMNS) + " |", "| --- " * len(COLUMNS) + "|", *(row(m, kept.files[m["file"]]) for m in runs)]
+    return [row(m, kept.files[m["file"]]) for m in runs]
+
+
+REFUSED = ("file", "why")
 
 
 def refused(kept):
-    return ["| file | why |", "| --- | --- |", *(refused_row(f, i) for f, i in sorted(kept.files.items()) if "why" in i)]
+    return [refused_row(f, i) for f, i in sorted(kept.files.items()) if "why" in i]
 
 
 def origins(kept, whose):
@@ -178,24 +191,26 @@ def origins(kept, whose):
 
 
 def write(debian, others, timeout):
-    page = TEXT.read_text()
     fine = " --fine" if runs_of(others, "ours", 100) else ""
-    parts = {
+    fill({
         "written": written_by("bench/run.sh cad --fine --peers --page", origins(debian, ["ours"])),
         "others_written": written_by(f"bench/run.sh cad --models FOLDER{fine} --timeout {timeout:.0f} --page", origins(others, ["ours"])),
         "peers": "; ".join(sorted(origins(debian, MESHERS[1:]))),
         "timeout": f"{timeout:.0f}",
-        "summaries": "\n".join(summaries(debian)),
-        "misses": "\n".join(misses(debian)),
-        "rows": "\n".join(rows_of(debian)),
-        "names": "\n".join(names_table(debian)),
-        "refused": "\n".join(refused(debian)),
-        "others_summaries": "\n".join(summaries(others)),
-        "others_misses": "\n".join(misses(others)),
-        "others_rows": "\n".join(rows_of(others)),
+        "summaries": "\n".join(table(SUMMARY, summaries(debian) + summaries(others, "others: "))),
+        "misses": "\n".join(misses_in_words(misses(debian), misses(others))),
+        "names_in_words": names_in_words(debian),
         "others_names": names_in_words(others),
-        "others_refused": "\n".join(refused(others)),
-    }
+    }, {"": (rows_of(debian), refused(debian)), "others_": (rows_of(others), refused(others))}, names_rows(debian))
+
+
+def fill(parts, rows, names):
+    """Writes the page of the words, and the rows of cells that go to CSV files."""
+    for whose, (made, left) in rows.items():
+        parts |= {f"{whose}rows": put(f"cad-{whose.rstrip('_')}".rstrip("-"), COLUMNS, made),
+                  f"{whose}refused": put(f"cad-{whose.replace('_', '-')}refused", REFUSED, left)}
+    parts["names"] = put("cad-names", NAMES, names)
+    page = TEXT.read_text(encoding="utf-8")
     for name, text in parts.items():
         page = page.replace("{{" + name + "}}", text)
-    PAGE.write_text(page)
+    write_page("cad", [page])
