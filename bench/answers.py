@@ -110,7 +110,7 @@ def campaign(a, kept, case, step, todo, order):
         if not (a.missing and key in kept.found["runs"]):
             row = {"case": case.name, "who": run.who, "what": run.what, "row": run.row, "order": order, "origin": ORIGIN}
             kept.keep(key, row | measured(case, step, run, order))
-            print(case.name, order, page.cells(kept.found["runs"][key]), flush=True)
+            print(*page.cells(kept.found["runs"][key]), flush=True)
         done.append(kept.found["runs"][key])
 
 
@@ -137,4 +137,5 @@ def main():
     page.write(kept.found, GOOD_ENOUGH, MOST_UNKNOWNS)
 
 
-main()
+if __name__ == "__main__":
+    main()

@@ -3,8 +3,8 @@ import math
 import pathlib
 
 from pages.origin import written_by
+from pages.tables import put, table, write as write_page
 
-PAGE = pathlib.Path("docs/measured/answers.md")
 HERE = pathlib.Path(__file__).resolve().parent
 MEASURES = ("displacement", "energy", "stress")
 
@@ -16,11 +16,7 @@ def percent(value):
 def cells(r):
     errors = [percent(r[m]) for m in MEASURES] if "stress" in r else [r.get("error", ""), "", ""]
     count = [f"{r[k]:,}" if k in r else "" for k in ("elements", "unknowns")]
-    return "| " + " | ".join([r["who"], r["what"], *count, *errors, f"{r['mesh']:.2f}", f"{r['solve']:.2f}" if "solve" in r else ""]) + " |"
-
-
-def table(head, lines):
-    return "\n".join(["| " + " | ".join(head) + " |", "|" + " --- |" * len(head), *lines])
+    return [r["case"], r["order"], r["who"], r["what"], *count, *errors, f"{r['mesh']:.2f}", f"{r['solve']:.2f}" if "solve" in r else ""]
 
 
 def between(a, b, measure, bound, of):
@@ -66,14 +62,18 @@ def belongs(r, row):
     return r["row"] == row or (row == "turn" and r["row"] == "default" and r["what"] in ("standard", "12 a turn"))
 
 
-def summary(rows, cases, order, measure, bound):
-    ways = [w for w in WAYS if any(r["who"] == w[1] and r["row"] == w[2] and r["order"] == order for r in rows)]
-    lines = []
-    for case in cases:
-        mine = [[r for r in rows if (r["case"], r["who"], r["order"]) == (case, who, order) and belongs(r, row)] for _, who, row in ways]
-        best = [reached(m, measure, bound) for m in mine]
-        lines.append("| " + " | ".join([case, *(in_words(b) for b in best)]) + " |")
-    return table(["case", *(w[0] for w in ways)], lines)
+ASKED = {"second order, 1 % of stress": (2, "stress", 1), "first order, 10 % of stress": (1, "stress", 10), "first order, 1 % of energy": (1, "energy", 1)}
+REACHED = ["asked", "case", *(way[0] for way in WAYS)]
+
+
+def all_reached(rows, cases):
+    made = []
+    for asked, (order, measure, bound) in ASKED.items():
+        for case in cases:
+            mine = ([r for r in rows if (r["case"], r["who"], r["order"]) == (case, who, order) and belongs(r, row)]
+                    if any((r["who"], r["order"], r["row"]) == (who, order, row) for r in rows) else [] for _, who, row in WAYS)
+            made.append([asked, case, *(in_words(reached(m, measure, bound)) for m in mine)])
+    return made
 
 
 DEFAULTS = (("draft", "Octafront"), ("standard", "Octafront"), ("fine", "Octafront"), ("12 a turn", "Gmsh"), ("its defaults", "Netgen"))
@@ -86,9 +86,11 @@ def default_cell(rows, case, order, what, who):
     return r.get("error", "")
 
 
-def defaults(rows, cases, order):
-    lines = ["| " + " | ".join([case, *(default_cell(rows, case, order, *d) for d in DEFAULTS)]) + " |" for case in cases]
-    return table(["case", *(f"{who}, {what}" for what, who in DEFAULTS)], lines)
+DEFAULT_HEAD = ["order", "case", *(f"{who}, {what}" for what, who in DEFAULTS)]
+
+
+def defaults(rows, cases):
+    return [[order, case, *(default_cell(rows, case, order, *d) for d in DEFAULTS)] for order in (2, 1) for case in cases]
 
 
 def mean(values):
@@ -96,20 +98,17 @@ def mean(values):
 
 
 def constants(rows):
-    """Where a row never comes to 1 %, its mean has no meaning."""
+    """Unknowns to 1 % of stress as elements a turn grow, and their geometric mean; the errors. Where a row never comes to 1 %, its mean has no meaning."""
     rows = [r for r in rows if r["row"].startswith("constant ")]
-    if not rows:
-        return ""
     cases, names, turns = (list(dict.fromkeys(r[k] for r in rows)) for k in ("case", "row", "what"))
     names.sort(key=lambda name: ("," in name, int(name.split("/")[1].split(",")[0]), name))  # of rows that were added later, too
-    lines = []
+    sums = []
     for name in names:
         found = [reached([r for r in rows if (r["row"], r["case"]) == (name, case)], "stress", 1) for case in cases]
         whole = two_digits(mean([f[1] for f in found])) if all(f and f[0] != "> " for f in found) else ""
-        lines.append("| " + " | ".join([name[9:], *(in_words(f) for f in found), whole]) + " |")
-    plain = (f"{capital(case)}, unknowns and the error of stress in percent:\n\n" + table(["constant", *turns], [
-        "| " + " | ".join([name[9:], *(told(rows, name, case, turn) for turn in turns)]) + " |" for name in names]) for case in cases)
-    return (HERE / "answers_constants.md.in").read_text().format(reached=table(["constant", *cases, "mean"], lines), each="\n\n".join(plain))
+        sums.append([name[9:], *(in_words(f) for f in found), whole])
+    plain = [[case, name[9:], *(told(rows, name, case, turn) for turn in turns)] for case in cases for name in names]
+    return (["constant", *cases, "mean"], sums), (["case", "constant", *turns], plain)
 
 
 def told(rows, name, case, turn):
@@ -117,33 +116,29 @@ def told(rows, name, case, turn):
     return f"{two_digits(r['unknowns'])}: {percent(r['stress'])}" if "stress" in r else r.get("error", "")
 
 
-def capital(text):
-    return text[0].upper() + text[1:]
-
-
-HEAD = ["mesher", "how", "elements", "unknowns", "displacement, %", "energy, %", "stress, %", "mesh, s", "solve, s"]
+HEAD = ["case", "order", "mesher", "how", "elements", "unknowns", "displacement, %", "energy, %", "stress, %", "mesh, s", "solve, s"]
 
 
 def each(rows, cases):
-    text = []
-    for case, says in cases.items():
-        text += [f"### {capital(case)}", says]
-        for order in (1, 2):
-            mine = [r for r in rows if (r["case"], r["order"]) == (case, order) and not r["row"].startswith("constant")]
-            text += [f"Order {order}:", table(HEAD, [cells(r) for r in sorted(mine, key=lambda r: (r["who"] != "Octafront", r["who"]))])]
-    return "\n\n".join(text)
-
-
-def said():
-    """What was written by hand."""
-    mark = "## What it says\n"
-    text = PAGE.read_text() if PAGE.is_file() else ""
-    return mark + text.split(mark)[1].split("\n## ")[0].rstrip("\n") + "\n\n" if mark in text else ""
+    kept = [r for r in rows if not r["row"].startswith("constant") and r["case"] in cases]
+    order = list(cases)
+    return [cells(r) for r in sorted(kept, key=lambda r: (order.index(r["case"]), r["order"], r["who"] != "Octafront", r["who"]))]
 
 
 def write(found, good, most):
     rows, cases = list(found["runs"].values()), found["cases"]
-    PAGE.write_text((HERE / "answers.md.in").read_text().format(
-        written=written_by("bench/run.sh answers", {r["origin"] for r in rows}), good=good, most=most, said=said(),
-        second_stress=summary(rows, cases, 2, "stress", 1), first_stress=summary(rows, cases, 1, "stress", 10), first_energy=summary(rows, cases, 1, "energy", 1),
-        second_defaults=defaults(rows, cases, 2), first_defaults=defaults(rows, cases, 1), constants=constants(rows), cases=each(rows, cases)))
+    fill(written_by("bench/run.sh answers", {r["origin"] for r in rows}), good, most, list(cases.items()), all_reached(rows, cases), defaults(rows, cases),
+         constants(rows), each(rows, cases))
+
+
+def fill(written, good, most, cases, of_all, by_default, found, runs):
+    """Writes the page, and the rows of cells that go to CSV files."""
+    second = [row[1:] for row in of_all if row[0] == next(iter(ASKED))]
+    (sums, plain) = found
+    text = (f"Constants that automatic sizes choose from (`--constants`, second order): unknowns to 1 % of stress, {put('answers-constants', *sums)}; unknowns and "
+            f"errors, {put('answers-constants-errors', *plain)}. ") if sums[1] else ""
+    page = (HERE / "answers.md.in").read_text(encoding="utf-8").format(
+        written=written, good=good, most=most, cases=put("answers-cases", ["case", "what is known"], cases),
+        second_stress="\n".join(table(REACHED[1:], second)), reached=put("answers-reached", REACHED, of_all),
+        defaults=put("answers-defaults", DEFAULT_HEAD, by_default), constants=text, runs=put("answers", HEAD, runs))
+    write_page("answers", [page])

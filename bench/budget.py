@@ -97,7 +97,7 @@ def tables(name, rows, failed):
     refused = collections.defaultdict(list)
     for model, why in failed:
         refused[why].append(model)
-    lines = [*spread(HEAD, rows, HEAD[1:-1]), "", put(name, HEAD, rows), "", "Least angles:", "",
+    lines = [*spread(HEAD, rows, HEAD[1:-1]), "", f"Each: {put(name, HEAD, rows)}.", "", "Least angles:", "",
              *worst(HEAD, rows, "least angle", ["model", "triangles", "made", "least β", "least angle", "CPU s"])]
     return lines + (["", "Not meshed:", "", *(f"- {why}: {', '.join(models)}" for why, models in sorted(refused.items()))] if failed else [])
 

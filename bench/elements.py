@@ -42,7 +42,7 @@ def targets(build, counts):
 
 
 def target_lines(rows):
-    return [*spread_by("wanted", TARGET_HEAD, rows, TARGET_HEAD[2:]), "", put("elements-wanted", TARGET_HEAD, rows)]
+    return [*spread_by("wanted", TARGET_HEAD, rows, TARGET_HEAD[2:]), "", f"Each: {put('elements-wanted', TARGET_HEAD, rows)}."]
 
 
 def predictions(build, diagonals):
@@ -63,7 +63,7 @@ def predictions(build, diagonals):
 
 
 def prediction_lines(rows):
-    return [*spread_by("size", HEAD, rows, HEAD[4:]), "", f"Median, least and most. {put('elements-predicted', HEAD, rows)}"]
+    return [*spread_by("size", HEAD, rows, HEAD[4:]), "", f"Median, least and most. Each: {put('elements-predicted', HEAD, rows)}."]
 
 
 def main():

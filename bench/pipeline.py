@@ -66,11 +66,11 @@ def ratio_row(model, count, ours, other):
 
 def lines_of(rows):
     shown = [HEAD.index(c) for c in ("model", "tets", "triangles/s", "filled tets/s", "improved tets/s", "all stages tets/s", "mean β", "peak bytes/tet")]
-    return [*table([HEAD[i] for i in shown], [[cells[i] for i in shown] for cells in rows]), "", put("pipeline", HEAD, rows)]
+    return [*table([HEAD[i] for i in shown], [[cells[i] for i in shown] for cells in rows]), "", f"With all figures: {put('pipeline', HEAD, rows)}."]
 
 
 def beside_lines(ratios):
-    return [*spread_by("elements", BESIDE_HEAD, ratios, BESIDE_HEAD[2:8]), "", f"Median, least and most. {put('pipeline-beside', BESIDE_HEAD, ratios)}"]
+    return [*spread_by("elements", BESIDE_HEAD, ratios, BESIDE_HEAD[2:8]), "", f"Median, least and most. Each: {put('pipeline-beside', BESIDE_HEAD, ratios)}."]
 
 
 def main():

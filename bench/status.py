@@ -154,15 +154,15 @@ def page(auto, kept, dirty):
             f"one; in {recovered} of them all was filled by recovery of the whole surface (docs/how/recovery.md).",
             f"- Dirty models: {', '.join(f'{n} × {v}' for v, n in sorted(counts.items()))}. Exit 3 is a refusal with a message; what repair can mend is "
             "meshed.", "",
-            "## Clean models, automatic size", "", *spread(HEAD, auto, HEAD[3:]), "", put("status-automatic", HEAD, auto), "",
+            "## Clean models, automatic size", "", *spread(HEAD, auto, HEAD[3:]), "", f"Each: {put('status-automatic', HEAD, auto)}.", "",
             "## Clean models and CT isosurfaces, surface kept", "",
             "What the surface allows: the best β of any element inside on its worst triangle, and its smallest angle inside between two triangles. "
             "Elements below β = .1: on a triangle that allows no better one (*forced*); with an edge of such a triangle, which the same needle makes poor; "
             "others. Then how many cavities the front left, and which rung of the closing ladder closed how many.", "",
-            *spread(KEPT_HEAD, kept, [c for c in KEPT_HEAD[3:] if not c.startswith("whole")]), "", put("status-kept", KEPT_HEAD, kept), "",
+            *spread(KEPT_HEAD, kept, [c for c in KEPT_HEAD[3:] if not c.startswith("whole")]), "", f"Each: {put('status-kept', KEPT_HEAD, kept)}.", "",
             "## Dirty models", "",
-            "Known defects: O open, E non-manifold edge, V non-manifold vertex, S self-intersection, R misoriented, I inside out, D degenerate, U unused "
-            f"vertices. {put('status-dirty', DIRTY_HEAD, dirty)}"]
+            f"Each, with its known defects and the first line of what was said: {put('status-dirty', DIRTY_HEAD, dirty)} (O open, E non-manifold edge, V "
+            "non-manifold vertex, S self-intersection, R misoriented, I inside out, D degenerate, U unused vertices)."]
 
 
 def main():

@@ -1,6 +1,6 @@
 """Tables of docs/measured: every row goes to a CSV file of docs/measured/rows, and on the page stands what the rows come to.
 
-    lines = [*spread(head, rows, ["elements", "CPU s"]), "", put("status", head, rows)]
+    lines = [*spread(head, rows, ["elements", "CPU s"]), "", f"Each: {put('status', head, rows)}."]
     write("status", [*head_of_page, *lines])
 
 Cells are what people read: numbers with separators of thousands, units, words. Least, median and most are cells as they stand,
@@ -40,12 +40,12 @@ def plain(cell):
 
 
 def put(name, head, rows, folder=MEASURED):
-    """Writes the rows to a CSV file; a sentence that leads there."""
+    """Writes the rows to a CSV file; a link to it, for a sentence."""
     assert len(set(head)) == len(head), head
     (folder / "rows").mkdir(exist_ok=True)
     with (folder / f"rows/{name}.csv").open("w", newline="", encoding="utf-8") as file:
         csv.writer(file, lineterminator="\n").writerows([[plain(cell) for cell in cells] for cells in [head, *rows]])
-    return f"All {len(rows)} rows: [{name}.csv](rows/{name}.csv)."
+    return f"[{name}.csv](rows/{name}.csv), {len(rows)} rows"
 
 
 def sorted_cells(head, rows, column):
