@@ -19,9 +19,9 @@ import tempfile
 ROOT = pathlib.Path(__file__).resolve().parents[1]
 sys.path.insert(0, str(ROOT / "scripts/lib"))
 from bounded import run  # noqa: E402
+from pages import tables  # noqa: E402
 from pages.origin import ORIGIN, written_by  # noqa: E402
 
-PAGE = ROOT / "docs/measured/repair-status.md"
 TOLERANCE = 1e-3   # of the diagonal
 ANGLES = (10, 160)  # degrees that no element should leave, but where the input forces it
 # fTetWild on 35 of these models (docs/measured/experiments.md says how others are run): what is to be beaten.
@@ -85,7 +85,7 @@ def done_to(row):
         return ""
     if report.get("clean"):
         return "nothing to do"
-    return "; ".join(report.get("notes", [])).replace("|", "/")[:400]
+    return "; ".join(report.get("notes", []))[:400]
 
 
 def verdict(row):
@@ -110,28 +110,33 @@ def far_of(made):
 def near(made):
     """What it costs to be nearer."""
     if "tets" not in made:
-        return made.get("message", "")[:80].replace("|", "/")
-    return f"{mille(far_of(made))}, {made['tets']:,}, {made['cpu_seconds']:.1f}"
+        return [made.get("message", "")[:80], "", ""]
+    return [mille(far_of(made)), f"{made['tets']:,}", f"{made['cpu_seconds']:.1f}"]
 
 
 def mille(value):
     return f"{1e3 * value:.2f}"
 
 
-def line(row):
+HEAD = ["model", "known defects", "faces", "result", "surface from input, ‰", "mesh from input elsewhere, ‰", "near what was moved, ‰",
+        "held to 1 ‰: from input, ‰", "held: tets", "held: CPU s", "closed, % of area", "input lost outside, % of area", "lost inside, % of area",
+        "only input, only mesh inside, points", "bodies", "tets", "least angle °", "most °", "mean β", "CPU s repair", "CPU s mesh", "MB",
+        "what was done, or why not"]
+
+
+def cells_of(row):
     mesh, surface = row["mesh"], row["repair"]
     cells = [row["file"], row["defects"], row["faces"], verdict(row)]
     if "tets" not in mesh or "boundary_from_input" not in surface:
         words = next((w for w in mesh["message"].replace("octafront: ", "").splitlines() if w.strip()), "")
-        return "| " + " | ".join(str(c) for c in cells + [""] * 12 + [words[:200].replace("|", "/")]) + " |"
+        return cells + [""] * (len(HEAD) - 5) + [words[:200]]
     sides = mesh["sides"]
-    cells += [mille(far_of(surface)), f"{mille(mesh['boundary_from_input']['distance'])}, {mille(mesh['moved_from_input']['distance'])}",
-              near(row.get("near", {})),
+    cells += [mille(far_of(surface)), mille(mesh["boundary_from_input"]["distance"]), mille(mesh["moved_from_input"]["distance"]), *near(row.get("near", {})),
               f"{100 * surface['closed_area']:.2f}", f"{100 * surface['lost_outside']:.2f}", f"{100 * surface['lost_inside']:.2f}",
               f"{sides['only_input_inside']}, {sides['only_result_inside']} of {sides['asked']}", mesh["components"],
-              f"{mesh['tets']:,}", f"{mesh['dihedral_min']:.1f}–{mesh['dihedral_max']:.1f}, {mesh['beta_mean']:.3f}",
-              f"{surface['cpu_seconds']:.2f}, {mesh['cpu_seconds']:.1f}", f"{mesh['megabytes']:.0f}", done_to(row)]
-    return "| " + " | ".join(str(c) for c in cells) + " |"
+              f"{mesh['tets']:,}", f"{mesh['dihedral_min']:.1f}", f"{mesh['dihedral_max']:.1f}", f"{mesh['beta_mean']:.3f}", f"{surface['cpu_seconds']:.2f}",
+              f"{mesh['cpu_seconds']:.1f}", f"{mesh['megabytes']:.0f}", done_to(row)]
+    return cells
 
 
 def summary(rows):
@@ -169,20 +174,20 @@ def summary(rows):
         f"angles {FTETWILD['angles'][0]}–{FTETWILD['angles'][1]}°, mean β {FTETWILD['mean beta']}, not manifold {FTETWILD['not manifold']}."]
 
 
+def rows_and_spread(rows):
+    """Rows of cells."""
+    return [*tables.spread(HEAD, rows, [c for c in HEAD[4:-1] if c != "only input, only mesh inside, points"]), "",
+            f"Each, and what was done to it: {tables.put('repair-status', HEAD, rows)}."]
+
+
 def page(rows):
-    head = ["model", "known defects", "faces", "result", "surface from input, ‰", "mesh from input, ‰: elsewhere, near what was moved",
-            "held to 1 ‰: from input, ‰; tets; CPU s", "closed, % of area",
-            "input lost outside, % of area", "inside", "only input, only mesh inside, points", "bodies", "tets",
-            "angles °, mean β", "CPU s repair, mesh", "MB", "what was done, or why not"]
-    return "\n".join([
-        "# Defective models", "", f"{written_by('bench/run.sh repair', {r['origin'] for r in rows})}. Models: `scripts/get-models.sh`. O open, E non-manifold edge, V non-manifold "
-        "vertex, S self-intersection, R misoriented, I inside out, D degenerate, U unused vertices.", "",
-        "Distances in ‰ of the diagonal, measured by sampling from the boundary to the input, except where what closes a hole is nearest. "
-        "*Lost*: the part of the input's area farther than 1 ‰ from the boundary, and outside of it (sheets, fins) or inside (inner walls, "
-        "debris). *Only input, only mesh inside*: random points where the input's generalised winding number is sure and the mesh says else; "
-        "turned and doubled faces mislead the number.", "", *summary(rows), "",
-        "![before and after](../images/repair.png)", "",
-        "| " + " | ".join(head) + " |", "|" + " --- |" * len(head), *map(line, rows), ""])
+    return ["# Defective models", "",
+            f"{written_by('bench/run.sh repair', {r['origin'] for r in rows})}. Models: `scripts/get-models.sh`. Distances in ‰ of the diagonal, measured by "
+            "sampling from the boundary to the input, except where what closes a hole is nearest. *Lost*: the part of the input's area farther than 1 ‰ from the "
+            "boundary, and outside of it (sheets, fins) or inside (inner walls, debris). In the rows, defects: O open, E non-manifold edge, V non-manifold vertex, "
+            "S self-intersection, R misoriented, I inside out, D degenerate, U unused vertices; *only input, only mesh inside*: random points where the input's "
+            "generalised winding number is sure and the mesh says else; turned and doubled faces mislead the number.", "",
+            *summary(rows), "", *rows_and_spread([cells_of(r) for r in rows]), "", "![before and after](../images/repair.png)"]
 
 
 def main():
@@ -205,11 +210,12 @@ def main():
             if a.lines:
                 with a.lines.open("a") as f:
                     f.write(json.dumps(row) + "\n")
-            print(line(row), flush=True)
+            print(tables.row(cells_of(row)), flush=True)
     rows = [done[r["file"]] for r in models]
     print("\n".join(summary(rows)))
     if not a.only:
-        PAGE.write_text(page(rows))
+        tables.write("repair-status", page(rows))
 
 
-main()
+if __name__ == "__main__":
+    main()
