@@ -8,6 +8,7 @@ smallest that --after leaves out. Writes docs/measured/damage.md. --lines append
 leaves out those that are there, so that a campaign may stop and go on.
 """
 import argparse
+import collections
 import json
 import pathlib
 import statistics
@@ -23,9 +24,9 @@ sys.path.insert(0, str(ROOT / "scripts/lib"))
 import damages  # noqa: E402
 import solids  # noqa: E402
 from bounded import run  # noqa: E402
+from pages import tables  # noqa: E402
 from pages.origin import ORIGIN, written_by  # noqa: E402
 
-PAGE = ROOT / "docs/measured/damage.md"
 KINDS = damages.KINDS | damages.MORE
 CLEAN = "undamaged"
 MOST = 1.3      # times the elements and the time of the undamaged model
@@ -124,38 +125,44 @@ def is_too_much(r):
     return r["part"] <= LARGE and max(r["elements x"], r["time x"]) > MOST
 
 
+HEAD = ["damage", "cases", "meshed", "damaged, % of the area (median)", "elements, times, median", "elements, most", "CPU time, times, median",
+        "CPU time, most", f"at most {MOST} times, of damage up to {LARGE:g} %", "volume, % (most)", "outside 10-160°"]
+LEFT_HEAD = ["model", "damage", "what", "result"]
+
+
 def line(name, its):
     made = [r for r in its if "failed" not in r]
     if not made:
-        return f"| {name} | {len(its)} | 0 | | | | | | |"
+        return [name, len(its), 0, *[""] * (len(HEAD) - 3)]
     small = [r for r in made if r["part"] <= LARGE]
-    worst = [f"{statistics.median(r[key] for r in made):.2f}, {max(r[key] for r in made):.2f}" for key in ("elements x", "time x")]
-    return (f"| {name} | {len(its)} | {len(made)} | {statistics.median(r['part'] for r in made):.2f} | {' | '.join(worst)} | "
-            f"{sum(not is_too_much(r) for r in small)} of {len(small)} | {max((abs(r['volume %']) for r in made)):.2f} | "
-            f"{sum(r['poor'] for r in made)} |")
+    worst = [f"{take(r[key] for r in made):.2f}" for key in ("elements x", "time x") for take in (statistics.median, max)]
+    return [name, len(its), len(made), f"{statistics.median(r['part'] for r in made):.2f}", *worst, f"{sum(not is_too_much(r) for r in small)} of {len(small)}",
+            f"{max((abs(r['volume %']) for r in made)):.2f}", sum(r["poor"] for r in made)]
 
 
-def table(rows):
-    head = ("| damage | cases | meshed | damaged, % of the area (median) | elements, times (median, most) | CPU time, times | "
-            f"at most {MOST} times, of damage up to {LARGE:g} % | volume, % (most) | outside 10-160° |")
-    out = [head, "|" + " --- |" * 9]
-    for kind in [k for k in KINDS if any(r["kind"] == k for r in rows)]:
-        out.append(line(kind, [r for r in rows if r["kind"] == kind]))
-    return "\n".join([*out, line("**all**", rows)]) + "\n"
+def lines_of(rows):
+    return [*(line(kind, [r for r in rows if r["kind"] == kind]) for kind in KINDS if any(r["kind"] == kind for r in rows)), line("all", rows)]
+
+
+def left_of(rows):
+    return [[r["model"], r["kind"], r["what"], r["failed"] if "failed" in r else
+             f"damaged {r['part']:.2f} %: elements {r['elements x']:.2f} times, time {r['time x']:.2f} times"]
+            for r in rows if "failed" in r or is_too_much(r)]
+
+
+def shown(lines, left):
+    """Rows of cells: the kinds that cost most, and the sum."""
+    return [*tables.worst(HEAD, lines[:-1], "elements, most", HEAD, most=True, count=6), tables.row(lines[-1]), "",
+            f"Each kind: {tables.put('damage', HEAD, lines)}. Refused, or more than {MOST} times as much: {tables.put('damage-left', LEFT_HEAD, left)}, "
+            f"by kind {', '.join(f'{kind} {n}' for kind, n in collections.Counter(r[1] for r in left).items()) or 'none'}."]
 
 
 def page(rows, command, version):
-    left = [r for r in rows if "failed" in r or is_too_much(r)]
-    lines = [f"| {r['model']} | {r['kind']} | {r['what']} | " + (f"{r['failed'].replace('|', '/')} |" if "failed" in r else
-             f"damaged {r['part']:.2f} %: elements {r['elements x']:.2f} times, time {r['time x']:.2f} times |") for r in left]
-    return "\n".join([
-        "# What damage costs", "", f"{written_by(command, {r['origin'] for r in rows})}, by {version}.", "",
-        f"{len({r['model'] for r in rows})} clean models, each damaged in up to {len({r['kind'] for r in rows})} ways (`scripts/lib/damages.py`), meshed with default options "
-        "(and `--sheets drop`, on one thread), over the undamaged model (divided into as small triangles, where holes need them). CPU times of runs that take less than "
-        f"{NOT_THE_TIME} s do not count. *Damaged*: the area of what is no longer "
-        "there as it was, whichever way it faces; all of it where the answer is another body.", "",
-        table(rows), f"## Refused, or more than {MOST} times as much", "",
-        "| model | damage | what | result |", "| --- | --- | --- | --- |", *lines, ""])
+    return ["# What damage costs", "", f"{written_by(command, {r['origin'] for r in rows})}, by {version}.", "",
+            f"{len({r['model'] for r in rows})} clean models, each damaged in up to {len({r['kind'] for r in rows})} ways (`scripts/lib/damages.py`), meshed with default "
+            "options (and `--sheets drop`, on one thread), over the undamaged model (divided into as small triangles, where holes need them). CPU times of runs that "
+            f"take less than {NOT_THE_TIME} s do not count. *Damaged*: the area of what is no longer there as it was, whichever way it faces; all of it where the "
+            "answer is another body. The six kinds that cost most elements, and all:", "", *shown(lines_of(rows), left_of(rows))]
 
 
 def command(a):
@@ -186,8 +193,9 @@ def main():
                     f.write(json.dumps(row) + "\n")
     rows = compared(rows)
     version = subprocess.run([a.program, "--version"], capture_output=True, text=True).stdout.strip()
-    print(table(rows))
-    PAGE.write_text(page(rows, command(a), version))
+    print("\n".join(tables.table(HEAD, lines_of(rows))))
+    if not a.only:
+        tables.write("damage", page(rows, command(a), version))
 
 
 if __name__ == "__main__":

@@ -26,6 +26,7 @@ damage = importlib.util.module_from_spec(spec)
 spec.loader.exec_module(damage)
 import solids  # noqa: E402, from scripts/lib
 from bounded import run  # noqa: E402, from scripts/lib
+from pages import tables  # noqa: E402
 from pages.origin import ORIGIN, written_by  # noqa: E402
 
 TOLERANCE = 1e-3          # of the diagonal: the default of --tolerance
@@ -34,7 +35,6 @@ MESH_DISTANCE = 5e-3      # elsewhere as near as meshes of clean surfaces stay: 
 VOLUME = 0.5              # percent
 VOLUME_OF_LARGEST = 3.0   # with holes of a tenth of the area
 EDGES = 1e-6              # of the diagonal
-PAGE = ROOT / "docs/measured/repair-known.md"
 
 
 def measure(build, known_file, result):
@@ -129,24 +129,19 @@ def do_clean(build, name, a):
 # -------------------------------------------------------------------------------------------------------- table
 
 
-def table(rows):
+HEAD = ["damage", "cases", "meshed", "all right", "topology right", "surface: farthest, % of diagonal, median", "greatest", "mesh: farthest, %",
+        "volume off, % (greatest, surface)", "wrong sides, points", "sharp edges off, % (greatest)", "CPU s repair, median", "CPU s mesh, median"]
+FAILED_HEAD = ["case", "damage", "model", "what", "wrong"]
+
+
+def lines_of(rows):
     """A line for each kind of damage, and one for all."""
-    head = ["damage", "cases", "meshed", "all right", "topology right", "surface: farthest, % of diagonal (median, greatest)",
-            "mesh: farthest, %; at the damage", "volume off, % (greatest, surface)", "wrong sides, points", "sharp edges off, % (greatest)",
-            "CPU s repair, mesh (medians)"]
-    out = ["| " + " | ".join(head) + " |", "|" + " --- |" * len(head)]
     kinds = [k for k in damage.damages.KINDS if any(r["kind"] == k for r in rows)]
-    for name, its in [(k, [r for r in rows if r["kind"] == k]) for k in kinds] + [("**all**", rows)]:
-        out.append("| " + " | ".join(str(c) for c in line(name, its)) + " |")
-    return "\n".join(out) + "\n"
+    return [line(name, its) for name, its in [(k, [r for r in rows if r["kind"] == k]) for k in kinds] + [("all", rows)]]
 
 
 def measured(rows, step):
     return [r[step] for r in rows if "volume_percent" in r.get(step, {})]
-
-
-def share(part, whole):
-    return f"{part} ({100 * part / max(1, whole):.1f} %)"
 
 
 def line(name, rows):
@@ -158,20 +153,25 @@ def line(name, rows):
     def topology_right(r):
         words = ("components", "shells", "genus", "bad edges", "bad vertices", "regions", "invalid", "status", "no end", "no result")
         return not any(w in text for text in r["wrong"] for w in words)
-    return [name, len(rows), share(len(meshes), len(rows)), share(sum(not r["wrong"] for r in rows), len(rows)),
-            share(sum(map(topology_right, rows)), len(rows)),
-            f"{statistics.median(far(surfaces)):.4f}, {max(far(surfaces)):.3f}", f"{max(far(meshes)):.3f}",
+    return [name, len(rows), len(meshes), sum(not r["wrong"] for r in rows), sum(map(topology_right, rows)),
+            f"{statistics.median(far(surfaces)):.4f}", f"{max(far(surfaces)):.3f}", f"{max(far(meshes)):.3f}",
             f"{max((abs(m['volume_percent']) for m in surfaces), default=float('nan')):.3f}",
             sum(m["sides"]["wrong"] for m in meshes),
             f"{100 * max((m['sharp_edges']['distance'] for m in surfaces), default=float('nan')):.6f}",
-            ", ".join(f"{statistics.median(r[step]['cpu_seconds'] for r in rows if step in r):.2f}" for step in ("repair", "mesh")
-                      if any(step in r for r in rows))]
+            *(f"{statistics.median(r[step]['cpu_seconds'] for r in rows if step in r):.2f}" if any(step in r for r in rows) else ""
+              for step in ("repair", "mesh"))]
+
+
+def shown(lines, failed):
+    """Rows of cells: the kinds of which not all is right, and the sum."""
+    return [*tables.table(HEAD, [c for c in lines if c[HEAD.index("all right")] != c[1] or c[0] == "all"]), "",
+            f"Each kind: {tables.put('repair-known', HEAD, lines)}.", "", f"## The {len(failed)} failed", "", *tables.table(FAILED_HEAD, failed[:20]), "",
+            f"Each: {tables.put('repair-known-failed', FAILED_HEAD, failed)}."]
 
 
 def page(rows, command):
     failed = [r for r in rows if r["wrong"]]
-    lines = [f"| {r['case']} | {r['kind']} | {r['model']} | {r['what']} | {'; '.join(r['wrong']).replace('|', '/')} |" for r in failed]
-    return "\n".join([
+    return [
         "# Damaged models whose answer is known", "", f"{written_by(command, {r['origin'] for r in rows})}.", "",
         f"{len(rows)} clean models, fetched and generated, damaged in known ways (`scripts/damage-models.py` says how), repaired and",
         "meshed with default options and `--sheets drop`, and measured against the undamaged model (`bench/judge_answer.cpp`), which repair never sees:", "",
@@ -186,7 +186,7 @@ def page(rows, command):
         "- **wrong sides**: of 10,000 points a model, half of them near the surface but not within .5 % of the diagonal nor in a",
         "  hole's zone, those that lie inside the one and outside the other.",
         f"- **sharp edges** (over 30°) that no defect touches: at most {EDGES:g} of the diagonal away.", "",
-        table(rows), f"## The {len(failed)} failed", "", "| case | damage | model | what | wrong |", "| --- | --- | --- | --- | --- |", *lines, ""])
+        *shown(lines_of(rows), [[r["case"], r["kind"], r["model"], r["what"], "; ".join(r["wrong"])] for r in failed])]
 
 
 # --------------------------------------------------------------------------------------------------------- main
@@ -218,9 +218,9 @@ def campaign(build, a):
             if row["wrong"]:
                 print(f"{row['case']:4} {row['kind']} {row['model']}, {row['what']}: {'; '.join(row['wrong'])}", flush=True)
     rows = sorted((r for r in done if r["case"] in numbers), key=lambda r: r["case"])
-    print(table(rows))
+    print("\n".join(tables.table(HEAD, lines_of(rows))))
     if a.page:
-        PAGE.write_text(page(rows, f"bench/run.sh known_answers --cases {a.cases} --page"))
+        tables.write("repair-known", page(rows, f"bench/run.sh known_answers --cases {a.cases} --page"))
     return sum(bool(r["wrong"]) for r in rows)
 
 
