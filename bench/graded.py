@@ -1,5 +1,4 @@
-"""Meshes whose sizes follow curvature, against HXT and TetGen side by side, and what such meshes are worth: writes the
-section "Sizes that follow curvature" of docs/measured/volume-bench.md.
+"""Meshes whose sizes follow curvature, against HXT and TetGen side by side, and what such meshes are worth: writes docs/measured/graded.md.
 
 Usage: bench/run.sh graded [--counts 1000000,4000000] [--models bunny00.off,...] [--runs N] [--large ELEMENTS]
 
@@ -13,6 +12,7 @@ import json
 import pathlib
 import tempfile
 
+from pages import tables
 from pages.origin import written_by
 from peers import gmsh, surfaces, tetgen
 from peers.process import finish, run_measured
@@ -22,8 +22,6 @@ MODELS = ["bunny00.off", "armadillo.off", "elephant.off", "couplingdown.off", "p
 COUNTS = [1_000_000]
 SMALLEST = 100_000
 PEERS_UP_TO = 5_000_000
-PAGE = pathlib.Path("docs/measured/volume-bench.md")
-MARKS = ("<!-- graded: begin -->", "<!-- graded: end -->")
 
 
 def mesh(build, folder, timeout, *options, threads=1):
@@ -71,7 +69,7 @@ def kept_rows(model, best):
     rows = []
     for name, row in best.items():
         if row["error"]:
-            rows.append(f"| {model} | {name} | – | – | – | – | – | – | – | – | {row['error']} |")
+            rows.append([model, name, row["error"], *[""] * (len(KEPT_HEAD) - 3)])
             continue
         q, outcome = row["quality"], row["outcome"]
         n = q["tets"]
@@ -82,14 +80,13 @@ def kept_rows(model, best):
             improved = f"{1e6 * stage_seconds(outcome, 'improve') / n:.2f}"
         ratio = "" if row is ours or ours["error"] else \
             f"{ours['quality']['tets'] / ours['outcome'].cpu_seconds / rate:.2f}"
-        rows.append(f"| {model} | {name} | {n:,} | {outcome.cpu_seconds:.2f} | {rate / 1e3:,.0f} | {ratio} | {filled} | {improved} | "
-                    f"{outcome.peak_bytes / n:.0f} | {q['beta_mean']:.4f} | {100 * q['beta_classes'][4] / n:.1f} | "
-                    f"{q['dihedral_min']:.1f}–{q['dihedral_max']:.1f} |")
+        rows.append([model, name, f"{n:,}", f"{outcome.cpu_seconds:.2f}", f"{rate / 1e3:,.0f}", ratio, filled, improved, f"{outcome.peak_bytes / n:.0f}",
+                     f"{q['beta_mean']:.4f}", f"{100 * q['beta_classes'][4] / n:.1f}", f"{q['dihedral_min']:.1f}", f"{q['dihedral_max']:.1f}"])
     return rows
 
 
-KEPT_HEAD = ["| surface | mesher | elements | CPU s | k/s | ours over it | filled, k/s | improved, µs | bytes per element | mean β | "
-             "above .8, % | angles ° |", "|---|---|" + "--:|" * 10]
+KEPT_HEAD = ["surface", "mesher", "elements", "CPU s", "k/s", "ours over it", "filled, k/s", "improved, µs", "bytes per element", "mean β", "above .8, %",
+             "least angle °", "most °"]
 
 
 def as_stl(model, folder):
@@ -98,8 +95,8 @@ def as_stl(model, folder):
     return path
 
 
-STL_HEAD = ["| model | elements | CPU s | k/s | sizes, % | surface, % | filled, % | improved, % | made over expected | length over wanted, mean | "
-            "% within .7–1.4 | mean β | above .8, % | angles ° | 2 threads, times | same bits |", "|---|" + "--:|" * 15]
+STL_HEAD = ["model", "elements", "CPU s", "k/s", "sizes, %", "surface, %", "filled, %", "improved, %", "made over expected", "length over wanted, mean",
+            "% within .7–1.4", "mean β", "above .8, %", "least angle °", "most °", "2 threads, times", "same bits"]
 
 
 def stl_row(build, model, count, runs, timeout):
@@ -110,7 +107,7 @@ def stl_row(build, model, count, runs, timeout):
             for threads in (1, 2):
                 outcome = mesh(build, folder, timeout, stl, "--elements", str(count), threads=threads)
                 if outcome.error:
-                    return f"| {model} | {outcome.error} |" + " – |" * 14
+                    return [model, outcome.error, *[""] * (len(STL_HEAD) - 2)]
                 wall[threads] = min(wall.get(threads, 1e9), outcome.wall_seconds)
                 if threads not in best or outcome.cpu_seconds < best[threads].cpu_seconds:
                     best[threads] = outcome
@@ -118,37 +115,36 @@ def stl_row(build, model, count, runs, timeout):
     report, n = one.report, one.report["tets"]
     share = lambda stage: f"{100 * stage_seconds(one, stage) / one.cpu_seconds:.0f}"
     quality, edges = report["quality"], report["volume_edges"]
-    return (f"| {model} | {n:,} | {one.cpu_seconds:.2f} | {n / one.cpu_seconds / 1e3:,.0f} | {share('size field')} | {share('surface front')} | "
-            f"{share('volume front')} | {share('improve')} | {n / report['expected_tets']:.3f} | {edges['mean_ratio']:.3f} | "
-            f"{100 * edges['share_within_0.7_1.4']:.1f} | {quality['beta_mean']:.4f} | "
-            f"{100 * quality['beta_classes'][4] / n:.1f} | {quality['dihedral_min_degrees']:.1f}–{quality['dihedral_max_degrees']:.1f} | "
-            f"{wall[1] / wall[2]:.2f} | {'yes' if report['hash'] == best[2].report['hash'] else 'NO'} |")
+    return [model, f"{n:,}", f"{one.cpu_seconds:.2f}", f"{n / one.cpu_seconds / 1e3:,.0f}", share("size field"), share("surface front"), share("volume front"),
+            share("improve"), f"{n / report['expected_tets']:.3f}", f"{edges['mean_ratio']:.3f}", f"{100 * edges['share_within_0.7_1.4']:.1f}",
+            f"{quality['beta_mean']:.4f}", f"{100 * quality['beta_classes'][4] / n:.1f}", f"{quality['dihedral_min_degrees']:.1f}",
+            f"{quality['dihedral_max_degrees']:.1f}", f"{wall[1] / wall[2]:.2f}", "yes" if report["hash"] == best[2].report["hash"] else "NO"]
 
 
-GROWTH_HEAD = ["| elements | CPU s | k/s | bytes per element | mean β | above .8, % | angles ° |", "|--:|" + "--:|" * 6]
+GROWTH_HEAD = ["elements", "CPU s", "k/s", "bytes per element", "mean β", "above .8, %", "least angle °", "most °"]
 
 
 def growth(build, model, counts, timeout):
     """How the whole run from STL grows with the number of elements."""
-    rows, points = list(GROWTH_HEAD), []
+    rows, points = [], []
     with tempfile.TemporaryDirectory() as folder:
         stl = as_stl(model, folder)
         for count in counts:
             outcome = mesh(build, folder, timeout, stl, "--elements", str(count))
             if outcome.error:
-                rows.append(f"| {count:,} | {outcome.error} |" + " – |" * 5)
+                rows.append([f"{count:,}", outcome.error, *[""] * (len(GROWTH_HEAD) - 2)])
                 continue
             quality, n = outcome.report["quality"], outcome.report["tets"]
             points.append((n, outcome.cpu_seconds))
-            rows.append(f"| {n:,} | {outcome.cpu_seconds:.2f} | {n / outcome.cpu_seconds / 1e3:,.0f} | {outcome.peak_bytes / n:.0f} | "
-                        f"{quality['beta_mean']:.4f} | {100 * quality['beta_classes'][4] / n:.1f} | "
-                        f"{quality['dihedral_min_degrees']:.1f}–{quality['dihedral_max_degrees']:.1f} |")
-            print(rows[-1], flush=True)
-    return rows + ["", f"CPU time grows as elements to the power {exponent(points):.2f}."]
+            rows.append([f"{n:,}", f"{outcome.cpu_seconds:.2f}", f"{n / outcome.cpu_seconds / 1e3:,.0f}", f"{outcome.peak_bytes / n:.0f}",
+                         f"{quality['beta_mean']:.4f}", f"{100 * quality['beta_classes'][4] / n:.1f}", f"{quality['dihedral_min_degrees']:.1f}",
+                         f"{quality['dihedral_max_degrees']:.1f}"])
+            print(tables.row(rows[-1]), flush=True)
+    return [*tables.table(GROWTH_HEAD, rows), "", f"CPU time grows as elements to the power {exponent(points):.2f}."]
 
 
 def kept_tables(args):
-    rows = list(KEPT_HEAD)
+    rows = []
     for model in args.models:
         for count in args.counts:
             with tempfile.TemporaryDirectory() as folder:
@@ -163,27 +159,29 @@ def kept_tables(args):
                               "timeout": args.timeout})
             for row in kept_rows(f"{model}, {count:,}", best):
                 rows.append(row)
-                print(row, flush=True)
+                print(tables.row(row), flush=True)
     return rows
 
 
 def stl_tables(args):
-    rows = list(STL_HEAD)
+    rows = []
     for model in args.models:
         for count in args.counts:
             rows.append(stl_row(args.build, model, count, args.runs, args.timeout))
-            print(rows[-1], flush=True)
+            print(tables.row(rows[-1]), flush=True)
     return rows
 
 
-def write(sections):
-    text = PAGE.read_text()
-    if MARKS[0] not in text:
-        text += f"\n{MARKS[0]}\n{MARKS[1]}\n"
-    before, after = text.split(MARKS[0])[0], text.split(MARKS[1])[1]
-    lines = "\n\n".join(f"### {title}\n\n" + "\n".join(rows) for title, rows in sections.items())
-    head = f"## Sizes that follow curvature\n\n{__doc__.split(chr(10) * 2)[2].strip()}\n\n{written_by('bench/run.sh graded')}.\n\n"
-    PAGE.write_text(before + MARKS[0] + "\n" + head + lines + "\n" + MARKS[1] + after)
+def shown(kept, stl):
+    """Rows of cells."""
+    return ["## Kept surfaces", "", *tables.spread_by("mesher", KEPT_HEAD, kept, KEPT_HEAD[2:]), "",
+            f"Median, least and most. Each: {tables.put('graded-kept', KEPT_HEAD, kept)}.", "",
+            "## From STL", "", *tables.spread(STL_HEAD, stl, STL_HEAD[1:-1]), "", f"Each: {tables.put('graded-stl', STL_HEAD, stl)}."]
+
+
+ABOUT = """Kept surfaces: each model is triangulated anew at curvature sizes for about so many tetrahedra; then each mesher fills that surface and keeps its
+triangles, one thread, in turns, the least CPU seconds (user and system) of the runs of the whole process, files included. From STL: the same models from a
+binary STL file, triangulated and filled."""
 
 
 def main():
@@ -196,11 +194,12 @@ def main():
     parser.add_argument("--timeout", type=float, default=600)
     args = parser.parse_args()
     args.build = args.build.resolve()
-    sections = {"Kept surfaces": kept_tables(args), "From STL": stl_tables(args)}
+    lines = shown(kept_tables(args), stl_tables(args))
     if args.large:
         counts = [SMALLEST, *(c for c in args.counts if SMALLEST < c < args.large), args.large]
-        sections[f"{args.models[0]}, how it grows"] = growth(args.build, args.models[0], counts, args.timeout)
-    write(sections)
+        lines += ["", f"## {args.models[0]}, how it grows", "", *growth(args.build, args.models[0], counts, args.timeout)]
+    tables.write("graded", ["# Sizes that follow curvature, against others", "", f"{written_by('bench/run.sh graded')}. {ABOUT}", "", *lines])
 
 
-main()
+if __name__ == "__main__":
+    main()

@@ -10,6 +10,7 @@ Usage: bench/run.sh improve [--generated N] [--skip-peers]
 CPU time is user and system time of one thread; octafront_evaluate reads every mesh back and judges it.
 """
 import argparse
+import collections
 import csv
 import json
 import pathlib
@@ -18,6 +19,7 @@ import shutil
 import sys
 import tempfile
 
+from pages import tables
 from pages.origin import written_by
 from peers import gmsh, netgen, surfaces, tetgen
 from peers.process import finish, run_measured
@@ -29,7 +31,6 @@ PEER_MODELS = ["bunny00.off", "elephant.off", "fandisk.off"]
 ELEMENTS = 200_000
 PEER_ELEMENTS = 60_000
 ELEMENTS_OF_UNIT_SIZE = 9.4  # elements of size 1 in a volume of 1, as the lattice makes them, measured
-PAGE = pathlib.Path("docs/measured/improve-bench.md")
 BENCH = pathlib.Path(__file__).resolve().parent
 TIMEOUT = 300
 
@@ -71,10 +72,6 @@ def cells(r, targets):
     return out
 
 
-def table(head, rows):
-    return ["| " + " | ".join(head) + " |", "|" + " --- |" * len(head), *("| " + " | ".join(r) + " |" for r in rows), ""]
-
-
 def one_size(build, source, folder):
     """The size that gives about ELEMENTS elements everywhere: measured once coarsely, elements go like its third power."""
     mesh, report = folder / "mesh.vtu", folder / "report.json"
@@ -85,16 +82,20 @@ def one_size(build, source, folder):
     return (ELEMENTS_OF_UNIT_SIZE * volume / ELEMENTS) ** (1 / 3)
 
 
+HEAD = ["models and level", "model", "elements", *(c[0] for c in COLUMNS.values()), "below .4", "not forced", "edge over wanted", "Hausdorff %", "check"]
+
+
 def own_meshes(build, kind, models, folder):
     """Rows of the table of models; a figure in bold misses its target."""
     rows = []
+    failed = lambda level, model, why: [f"{kind}, {level}", model, *[""] * (len(HEAD) - 3), why]
     for model in models:
         source = f"models/clean/{model}"
         sizes = ["--elements", ELEMENTS]
         if kind == "smooth, one size":
             h = one_size(build, source, folder)
             if h is None:
-                rows.append([model, "", "no mesh"])
+                rows.append(failed("default", model, "no mesh"))
                 continue
             sizes = ["--size", f"{h:.6g}"]
         for level in ("default", "best"):
@@ -102,15 +103,15 @@ def own_meshes(build, kind, models, folder):
             done = octafront(build, "mesh", source, "-o", mesh, *sizes, "--improve", level, "--threads", 1,
                              "--json", report, "-q")
             if done.error:
-                rows.append([model, level, done.error])
+                rows.append(failed(level, model, done.error))
                 continue
             r = judged(build, mesh, source)
             improve = stage(report, "improve")
             r["us"] = 1e6 * improve["cpu_seconds"] / r["tets"]
             count = improve["counters"]
-            below = f"{count['elements below 0.4']:.0f}, {count['not forced']:.0f}"
+            below = [f"{count['elements below 0.4']:.0f}", f"{count['not forced']:.0f}"]
             ratio = json.loads(report.read_text())["volume_edges"]["mean_ratio"]
-            rows.append([model, level, f"{r['tets']:,}", *cells(r, TARGETS[kind][level]), below, f"{ratio:.3f}",
+            rows.append([f"{kind}, {level}", model, f"{r['tets']:,}", *cells(r, TARGETS[kind][level]), *below, f"{ratio:.3f}",
                          f"{r['hausdorff_percent']:.3f}", "valid" if not r["defect"] else "INVALID"])
             print(" | ".join(rows[-1]), flush=True)
     return rows
@@ -136,7 +137,7 @@ def never_worse(build, generated, folder):
             f"surfaces; {r['skipped']} surfaces gave no start mesh), four levels each: {r['runs']:,} runs, "
             f"{r['passes']:,} passes. **{len(r['failures'])} failures.**", ""]
     print(text[0], flush=True)
-    return text + [f"- {f}" for f in r["failures"][:20]] + [""]
+    return text + [f"- {n} times: {failure}" for failure, n in collections.Counter(r["failures"]).most_common(20)] + [""]
 
 
 def kept_surface(build, model, folder):
@@ -204,11 +205,15 @@ PEERS = {"TetGen": (start_tetgen, optimize_tetgen, "TetGen -O9/7"), "Gmsh Delaun
          "Netgen": (start_netgen, optimize_netgen, "Netgen")}
 
 
+PEER_HEAD = ["model", "start mesh of", "optimiser", "elements", *(c[0] for c in COLUMNS.values())]
+
+
 def peer_rows(build, model, name, surface, folder):
     make, optimize, own = PEERS[name]
+    failed = lambda what, run: [model, name, what, run.error, *[""] * len(COLUMNS)]
     start = make(surface, folder)
     if not start.mesh:
-        return [[model, name, "start", start.error]]
+        return [failed("start", start)]
     before = judged(build, start.mesh)
     rows = [[model, name, "start", f"{before['tets']:,}", *cells(before, {})]]
     done = optimize(start.mesh, folder)
@@ -217,12 +222,12 @@ def peer_rows(build, model, name, surface, folder):
         r["us"] = 1e6 * (done.stage_seconds or done.cpu_seconds) / before["tets"]
         rows.append([model, name, own, f"{r['tets']:,}", *cells(r, {})])
     else:
-        rows.append([model, name, own, done.error])
+        rows.append(failed(own, done))
     for level in ("default", "best"):
         mesh, report = folder / "ours.vtu", folder / "ours.json"
         run = octafront(build, "improve", start.mesh, "-o", mesh, "--improve", level, "--threads", 1, "--json", report, "-q")
         if run.error:
-            rows.append([model, name, f"octafront {level}", run.error])
+            rows.append(failed(f"octafront {level}", run))
             continue
         r = judged(build, mesh)
         r["us"] = 1e6 * stage(report, "improve")["cpu_seconds"] / before["tets"]
@@ -243,6 +248,20 @@ def others_meshes(build, folder):
     return rows
 
 
+def shown(rows):
+    """Rows of cells."""
+    wanted = [f"{kind}, {level}: " + ", ".join(f"{COLUMNS[k][0]} {v:g}" for k, v in t.items()) for kind, levels in TARGETS.items() if kind != "smooth, one size"
+              for level, t in levels.items()]
+    return [f"Targets: {'; '.join(wanted)}. A figure in bold misses its target.", "", *tables.spread_by("models and level", HEAD, rows, HEAD[3:-1]), "",
+            f"Median, least and most. Each: {tables.put('improve-bench', HEAD, rows)}."]
+
+
+def shown_peers(rows):
+    kinds = [[f"{r[1]}: {r[2]}", *r[1:]] for r in rows]
+    return ["Made without optimisers on kept surfaces; then their own optimiser and ours, which keep the boundary:", "",
+            *tables.spread_by("start mesh: optimiser", ["start mesh: optimiser", *PEER_HEAD[1:]], kinds, PEER_HEAD[4:]), "", f"Each: {tables.put('improve-peers', PEER_HEAD, rows)}."]
+
+
 def main():
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
     parser.add_argument("build", type=pathlib.Path)
@@ -250,24 +269,16 @@ def main():
     parser.add_argument("--skip-peers", action="store_true")
     args = parser.parse_args()
     build = args.build.resolve()
-    head = ["model", "level", "elements", *(c[0] for c in COLUMNS.values()), "below .4, of them not forced",
-            "edge over wanted", "Hausdorff %", "check"]
-    text = ["# Improvement, measured", "", f"{written_by('bench/run.sh improve')}; what is measured, and how, is said at the top of "
-            "`bench/improve.py`. CPU time of one thread. A figure in bold misses its target.", ""]
+    text = ["# Improvement, measured", "", f"{written_by('bench/run.sh improve')}; what is measured, and how, is said at the top of `bench/improve.py`. Meshes of "
+            f"{ELEMENTS:,} elements, CPU time of one thread.", ""]
     with tempfile.TemporaryDirectory() as scratch:
         folder = pathlib.Path(scratch)
-        for kind, models in (("smooth", SMOOTH), ("smooth, one size", SMOOTH), ("CAD", CAD)):
-            wanted = "; ".join(f"{level}: " + ", ".join(f"{COLUMNS[k][0]} {v:g}" for k, v in t.items())
-                               for level, t in TARGETS[kind].items())
-            text += [f"## {kind[0].upper() + kind[1:]} models, {ELEMENTS:,} elements", "", f"Targets, {wanted}.", "",
-                     *table(head, own_meshes(build, kind, models, folder))]
-        text += ["## Never worse", "", *never_worse(build, args.generated, folder)]
+        rows = [row for kind, models in (("smooth", SMOOTH), ("smooth, one size", SMOOTH), ("CAD", CAD)) for row in own_meshes(build, kind, models, folder)]
+        text += [*shown(rows), "", "## Never worse", "", *never_worse(build, args.generated, folder)]
         if not args.skip_peers:
-            text += ["## Start meshes of others", "", "The boundary is kept by all.", "",
-                     *table(["model", "start mesh of", "optimiser", "elements", *(c[0] for c in COLUMNS.values())],
-                            others_meshes(build, folder))]
-    PAGE.write_text("\n".join(text))
-    print(f"written: {PAGE}")
+            text += ["## Start meshes of others", "", *shown_peers(others_meshes(build, folder))]
+    tables.write("improve-bench", text)
 
 
-main()
+if __name__ == "__main__":
+    main()

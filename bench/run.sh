@@ -9,7 +9,7 @@
 #   bench/run.sh elements    --elements N met? prediction, sizes in the volume          -> docs/measured/benchmarks.md
 #   bench/run.sh gradation   gradations from .05 to .5 side by side                       -> docs/measured/gradation.md
 #   bench/run.sh volume      kept surfaces up to 10 M elements, against TetGen, HXT and Netgen -> docs/measured/volume-bench.md
-#   bench/run.sh graded      sizes that follow curvature, against HXT and TetGen side by side; from STL -> docs/measured/volume-bench.md
+#   bench/run.sh graded      sizes that follow curvature, against HXT and TetGen side by side; from STL -> docs/measured/graded.md
 #   bench/run.sh peers       surfaces kept and made anew, against TetGen, Gmsh, Netgen and CGAL -> build/release/experiments/peers.json
 #   bench/run.sh complexes   several regions in one mesh, against TetGen and Gmsh       -> docs/measured/complexes.md
 #   bench/run.sh improve     improvement against its targets, never worse, start meshes of others -> docs/measured/improve-bench.md

@@ -13,6 +13,7 @@ import sys
 import tempfile
 
 sys.path.insert(0, str(pathlib.Path(__file__).resolve().parent))
+from pages import tables  # noqa: E402
 from pages.origin import written_by  # noqa: E402
 from peers import gmsh, tetgen  # noqa: E402
 from peers.process import finish, run_measured  # noqa: E402
@@ -20,7 +21,8 @@ from peers.surfaces import write_off  # noqa: E402
 import json  # noqa: E402
 
 THICKNESS = [1e-1, 1e-2, 1e-3, 1e-4, 1e-5, 1e-6]
-PAGE = pathlib.Path("docs/measured/thin-bodies.md")
+HEAD = ["body", "thickness", "mesher", "volume, %", "elements", "least angle", "most angle", "CPU s"]
+BEFORE = "before"
 SIZE = 0.05  # of those that are asked for a size: bodies are 1 to 2 across
 
 
@@ -108,13 +110,23 @@ def judged(build, run, surface, timeout):
     with tempfile.TemporaryDirectory() as folder:
         outcome = run(surface, folder, timeout)
         if outcome.mesh is None:
-            return f"no mesh: {outcome.error[:60]}", "", "", f"{outcome.cpu_seconds:.1f}"
+            return f"no mesh: {outcome.error[:60]}", "", "", "", f"{outcome.cpu_seconds:.1f}"
         done = subprocess.run([build / "bench/octafront_evaluate", outcome.mesh, surface], capture_output=True, text=True)
         if done.returncode != 0:
-            return "not readable", "", "", f"{outcome.cpu_seconds:.1f}"
+            return "not readable", "", "", "", f"{outcome.cpu_seconds:.1f}"
         j = json.loads(done.stdout)
         volume = f"{j['volume_percent']:+.3f}" + (" **not valid**" if j["defect"] else "")
-        return volume, f"{j['tets']:,}", f"{j['dihedral_min']:.3g} – {j['dihedral_max']:.5g}", f"{outcome.cpu_seconds:.1f}"
+        return volume, f"{j['tets']:,}", f"{j['dihedral_min']:.3g}", f"{j['dihedral_max']:.5g}", f"{outcome.cpu_seconds:.1f}"
+
+
+def shown(rows):
+    """Rows of cells: volumes side by side, the spread of the rest."""
+    meshers = list(dict.fromkeys(r[2] for r in rows))
+    bodies = list(dict.fromkeys((r[0], r[1]) for r in rows))
+    volume = {(r[0], r[1], r[2]): r[3] if tables.number(r[3]) is not None else "-" for r in rows}
+    return ["Volume against the input's, in percent (-: no mesh, or one that is not valid):", "",
+            *tables.table([*HEAD[:2], *meshers], [[*body, *(volume.get((*body, m), "") for m in meshers)] for body in bodies]), "",
+            *tables.spread_by("mesher", HEAD, rows, HEAD[4:]), "", f"Median, least and most. Each: {tables.put('thin-bodies', HEAD, rows)}."]
 
 
 def main():
@@ -127,10 +139,10 @@ def main():
     program = (a.build / "cli/octafront").resolve()
     runs = {}
     if a.before:
-        runs["before"] = octafront(a.before.resolve())
+        runs[BEFORE] = octafront(a.before.resolve())
     runs |= {"automatic": octafront(program), f"`--size {SIZE}`": octafront(program, "--size", str(SIZE)),
              "Gmsh HXT": lambda s, f, t: gmsh.remesh(s, f, t, SIZE, gmsh.HXT), "TetGen -pYq": tetgen.fill}
-    kept = [] if a.before or not a.page else [r for r in PAGE.read_text().splitlines() if "| before |" in r]
+    kept = [] if a.before or not a.page else [r for r in tables.rows_of("thin-bodies") if r[2] == BEFORE]
     rows = []
     for make in (plate, disc, tube, shell):
         for t in THICKNESS:
@@ -138,25 +150,17 @@ def main():
                 surface = pathlib.Path(folder, "body.off")
                 points, triangles = make(t)
                 write_off(surface, turned(points), triangles)
-                rows += [r for r in kept if r.startswith(f"| {make.__name__} | {t:g} |")]
+                rows += [r for r in kept if r[:2] == [make.__name__, f"{t:g}"]]
                 for name, run in runs.items():
-                    rows.append(f"| {make.__name__} | {t:g} | {name} | " + " | ".join(judged(a.build, run, surface, a.timeout)) + " |")
-                    print(rows[-1], flush=True)
-    if not a.page:
-        return
-    PAGE.write_text("\n".join([
-        "# Thin bodies", "",
-        f"{written_by('bench/run.sh thin --page')}, one thread. "
-        "*Before*: commit 912d740, by `--before PROGRAM`, on 2026-11-24.", "",
-        "Plates of 1 x 1, discs of radius 1 (48 corners), tubes of radius 1 and height 2 (48 corners), shells of spheres of radius 1 "
-        "(10,240 triangles), turned by some angles; thickness in the same units. Volume against the input's, in percent; every file "
-        f"is judged by `octafront_evaluate`. Gmsh: surface anew at size {SIZE}; TetGen keeps the input's triangles, and fills "
-        f"the cavities of shells, as no hole is marked. At most {a.timeout:.0f} s.", "",
-        "Angles near 0 and 180 degrees are what one layer of elements makes of such walls. Where both sides are divided alike an "
-        "element may span an edge and the one right behind it, flat up to rounding; improvement opens such elements by a vertex in "
-        "the wall (docs/how/improve.md). A few stay at rims, and where a cavity was closed by a kernel point.", "",
-        "| body | thickness | mesher | volume, % | elements | dihedral angles | CPU s |", "| --- | --- | --- | --- | --- | --- | --- |",
-        *rows, ""]))
+                    rows.append([make.__name__, f"{t:g}", name, *judged(a.build, run, surface, a.timeout)])
+                    print(tables.row(rows[-1]), flush=True)
+    if a.page:
+        tables.write("thin-bodies", [
+            "# Thin bodies", "", f"{written_by('bench/run.sh thin --page')}, one thread. *Before*: commit 912d740, by `--before PROGRAM`, on 2026-11-24.", "",
+            "Plates of 1 x 1, discs of radius 1 (48 corners), tubes of radius 1 and height 2 (48 corners), shells of spheres of radius 1 (10,240 triangles), "
+            "turned by some angles; thickness in the same units. Every file is judged by `octafront_evaluate`. Gmsh: surface anew at size "
+            f"{SIZE}; TetGen keeps the input's triangles, and fills the cavities of shells, as no hole is marked. At most {a.timeout:.0f} s.", "", *shown(rows)])
 
 
-main()
+if __name__ == "__main__":
+    main()

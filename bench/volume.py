@@ -6,8 +6,8 @@ Usage: bench/run.sh volume [--counts 100000,1000000] [--models bunny00.off,...] 
 Each model is triangulated anew at uniform sizes, for about the given numbers of tetrahedra; then every mesher fills that
 surface and keeps its triangles. Ours runs without improvement on one thread, with the lattice core and without it.
 Times are CPU seconds (user and system) of the whole process, files included (ours and HXT's are MSH 4.1), and of filling
-alone as each one reports it. octafront_evaluate reads every mesh back and judges it. --only-threads measures the section "Threads" again,
-for which nothing else may run, and replaces it on the page.
+alone as each one reports it. octafront_evaluate reads every mesh back and judges it. --only-threads measures wall times on several threads alone,
+for which nothing else may run, and prints them.
 """
 import argparse
 import json
@@ -16,6 +16,7 @@ import pathlib
 import tempfile
 import time
 
+from pages import tables
 from pages.origin import written_by
 from peers import gmsh, netgen, tetgen
 from peers.process import finish, run_measured
@@ -24,8 +25,6 @@ MODELS = ["bunny00.off", "refined_elephant.off", "fandisk_large.off"]
 COUNTS = [100_000, 1_000_000, 4_000_000, 10_000_000]
 PEERS_UP_TO = {"TetGen": 5_000_000, "HXT": 5_000_000, "HXT, not optimised": 5_000_000, "Netgen": 150_000}
 EVALUATED_UP_TO = 12_000_000
-PAGE = pathlib.Path("docs/measured/volume-bench.md")
-GRADED = "<!-- graded: begin -->"  # what follows on the page is written by bench/graded.py and by hand, and stays
 
 
 def surface_of_size(build, model, size, out):
@@ -100,21 +99,22 @@ def rate(tets, seconds):
 def table_row(model, row):
     o = row["outcome"]
     if row["error"]:
-        return f"| {model} | {row['mesher']} | – | {o.cpu_seconds:.1f} | – | – | – | – | – | – | – | – | {row['error']} |"
+        return [model, row["mesher"], "", f"{o.cpu_seconds:.1f}", *[""] * 8, row["error"]]
     q, n = row["quality"], row["tets"]
     share = lambda k: 100 * q["beta_classes"][k] / n
-    return (f"| {model} | {row['mesher']} | {n:,} | {o.cpu_seconds:.2f} | {rate(n, o.cpu_seconds):,.0f} | "
-            f"{o.stage_seconds or 0:.2f} | {rate(n, o.stage_seconds):,.0f} | {o.peak_bytes / n:.0f} | {q['beta_mean']:.3f} | "
-            f"{share(4):.1f} | {share(0):.3f} | {q['dihedral_min']:.1f} | |")
+    return [model, row["mesher"], f"{n:,}", f"{o.cpu_seconds:.2f}", f"{rate(n, o.cpu_seconds):,.0f}", f"{o.stage_seconds or 0:.2f}",
+            f"{rate(n, o.stage_seconds):,.0f}", f"{o.peak_bytes / n:.0f}", f"{q['beta_mean']:.3f}", f"{share(4):.1f}", f"{share(0):.3f}",
+            f"{q['dihedral_min']:.1f}", ""]
 
 
-HEAD = ("| surface | mesher | tets | process CPU s | k tets/s | filling CPU s | k tets/s | peak bytes/tet | mean β | "
-        "% above .8 | % below .2 | min dihedral ° | |\n" + "|---|---|" + "--:|" * 10 + "---|")
+HEAD = ["surface", "mesher", "tets", "process CPU s", "process, k tets/s", "filling CPU s", "filling, k tets/s", "peak bytes/tet", "mean β", "% above .8",
+        "% below .2", "min dihedral °", "fault"]
+RATIO_HEAD = ["surface", "wanted", "ours", *(f"over {p}{of}" for p in PEERS_UP_TO for of in ("", ", process"))]
 
 
 def ratios(rows):
     """Our rates of filling over theirs, per surface."""
-    lines = ["| surface | ours | " + " | ".join(f"over {p}" for p in PEERS_UP_TO) + " |", "|---|---|" + "--:|" * len(PEERS_UP_TO)]
+    made = []
     for (model, count), group in rows.items():
         by_name = {r["mesher"]: r for r in group if not r["error"]}
         of = lambda name, whole: rate(by_name[name]["tets"], by_name[name]["outcome"].cpu_seconds if whole
@@ -122,10 +122,9 @@ def ratios(rows):
         for ours in ("octafront, lattice core", "octafront, front alone"):
             if ours not in by_name:
                 continue
-            cells = [f"{of(ours, False) / of(p, False):.1f} ({of(ours, True) / of(p, True):.1f})" if p in by_name else "–"
-                     for p in PEERS_UP_TO]
-            lines.append(f"| {model}, {count:,} | {ours[11:]} | " + " | ".join(cells) + " |")
-    return lines
+            made.append([model, f"{count:,}", ours[11:], *(f"{of(ours, whole) / of(p, whole):.1f}" if p in by_name else ""
+                                                           for p in PEERS_UP_TO for whole in (False, True))])
+    return made
 
 
 def exponent(points):
@@ -138,7 +137,7 @@ def exponent(points):
 
 
 def exponents(rows, models):
-    lines = ["| surface | mesher | filling | whole process |", "|---|---|--:|--:|"]
+    lines = []
     for model in models:
         for name in ("octafront, lattice core", "octafront, front alone", "HXT", "TetGen"):
             runs = [r for (m, _), group in rows.items() if m == model for r in group
@@ -146,23 +145,26 @@ def exponents(rows, models):
             if len(runs) > 2:
                 fits = [exponent([(r["tets"], seconds(r["outcome"])) for r in runs])
                         for seconds in (lambda o: o.stage_seconds, lambda o: o.cpu_seconds)]
-                lines.append(f"| {model} | {name} | {fits[0]:.2f} | {fits[1]:.2f} |")
+                lines.append([model, name, f"{fits[0]:.2f}", f"{fits[1]:.2f}"])
     return lines
+
+
+EXPONENT_HEAD = ["surface", "mesher", "filling", "whole process"]
+LADDER_HEAD = ["surface", "wanted", "ours", "faces left", "cavities", "closing CPU s", "% of filling"]
 
 
 def ladder_costs(rows):
     """What closing the cavities costs that the front leaves."""
-    lines = ["| surface | ours | faces left | cavities | closing CPU s | % of filling |", "|---|---|" + "--:|" * 4]
+    made = []
     for (model, count), group in rows.items():
         for row in group:
             counters = getattr(row["outcome"], "counters", None)
             if row["error"] or counters is None:
                 continue
             seconds = counters.get("closing CPU seconds", 0)
-            lines.append(f"| {model}, {count:,} | {row['mesher'][11:]} | {counters['faces left']:.0f} | "
-                         f"{counters.get('cavities', 0):.0f} | {seconds:.3f} | "
-                         f"{100 * seconds / row['outcome'].stage_seconds:.1f} |")
-    return lines
+            made.append([model, f"{count:,}", row["mesher"][11:], f"{counters['faces left']:.0f}", f"{counters.get('cavities', 0):.0f}", f"{seconds:.3f}",
+                         f"{100 * seconds / row['outcome'].stage_seconds:.1f}"])
+    return made
 
 
 def speed_up(build, surface, core, threads, pairs, timeout):
@@ -181,19 +183,17 @@ def thread_rows(build, model, count, surface, threads, timeout):
     rows = []
     for core in ("lattice", "none"):
         best = speed_up(build, surface, core, threads, 2, timeout)
-        rows.append(f"| {model}, {count:,} | core {core} | {best[1]:.2f} | {best[threads]:.2f} | "
-                    f"{best[1] / best[threads]:.2f} |")
-        print(rows[-1], flush=True)
+        rows.append([model, f"{count:,}", f"core {core}", f"{best[1]:.2f}", f"{best[threads]:.2f}", f"{best[1] / best[threads]:.2f}"])
+        print(tables.row(rows[-1]), flush=True)
     return rows
 
 
 def thread_head(threads):
-    return [f"| surface | ours | 1 thread, wall s | {threads} threads, wall s | times |", "|---|---|--:|--:|--:|"]
+    return ["surface", "wanted", "ours", "1 thread, wall s", f"{threads} threads, wall s", "times"]
 
 
-def replace_threads(args):
-    """The section of the page measured again."""
-    lines = thread_head(args.threads)
+def threads_alone(args):
+    lines = []
     for model in args.models:
         with tempfile.TemporaryDirectory() as folder:
             for count, size in zip(args.counts, calibrated_sizes(args.build, model, args.counts, folder)):
@@ -201,10 +201,26 @@ def replace_threads(args):
                     surface = pathlib.Path(folder, f"{count}.off")
                     surface_of_size(args.build, model, size, surface)
                     lines += thread_rows(args.build, model, count, surface, args.threads, args.timeout)
-    text = args.page.read_text()
-    start = text.index("## Threads\n")
-    end = text.index("\n## ", start)
-    args.page.write_text(text[:start] + "## Threads\n\n" + "\n".join(lines) + "\n" + text[end:])
+    print("\n".join(tables.table(thread_head(args.threads), lines)))
+
+
+def shown(found, powers, threads, ladder, every, of_threads=2):
+    """Rows of cells."""
+    kinds = [[f"{r[2]}, {r[1]}", *r[1:]] for r in found]
+    by = ["ours, tetrahedra wanted", *RATIO_HEAD[1:]]
+    return ["Ratios of rates of filling, and of whole processes, ours over theirs:", "",
+            *tables.spread_by(by[0], by, [k for k in kinds if any(k[3:])], by[3:]), "", f"Median, least and most. Each: {tables.put('volume-ratios', RATIO_HEAD, found)}.", "",
+            "Exponents of CPU time over elements:", "", *tables.spread_by("mesher", EXPONENT_HEAD, powers, EXPONENT_HEAD[2:]), "",
+            f"Each: {tables.put('volume-exponents', EXPONENT_HEAD, powers)}. Threads, the best wall times in turns: "
+            f"{tables.put('volume-threads', thread_head(of_threads), threads)}. The closing ladder, what the cavities cost that the front leaves: at most "
+            f"{tables.sorted_cells(LADDER_HEAD, ladder, '% of filling')[-1]} % of filling; each: {tables.put('volume-ladder', LADDER_HEAD, ladder)}.", "",
+            "All runs:", "", *tables.spread_by("mesher", HEAD, every, HEAD[4:-1]), "", f"Each: {tables.put('volume-bench', HEAD, every)}."]
+
+
+ABOUT = """Each model is triangulated anew at uniform sizes, for about the given numbers of tetrahedra; then every mesher fills that surface and keeps its
+triangles. Ours runs without improvement on one thread, with the lattice core and without it. Times are CPU seconds (user and system) of the whole process,
+files included (ours and HXT's are MSH 4.1), and of filling alone as each one reports it. octafront_evaluate reads every mesh back and judges it. Sizes that
+follow curvature: [graded](graded.md)."""
 
 
 def main():
@@ -215,13 +231,12 @@ def main():
     parser.add_argument("--threads", type=int, default=2, help="compared with one")
     parser.add_argument("--timeout", type=float, default=120)
     parser.add_argument("--only-threads", action="store_true")
-    parser.add_argument("--page", type=pathlib.Path, default=PAGE)
     args = parser.parse_args()
     args.build = args.build.resolve()
     if args.only_threads:
-        return replace_threads(args)
-    start, rows, threads = time.time(), {}, thread_head(args.threads)
-    table = [HEAD]
+        return threads_alone(args)
+    start, rows, threads = time.time(), {}, []
+    every = []
     for model in args.models:
         with tempfile.TemporaryDirectory() as folder:
             for count, size in zip(args.counts, calibrated_sizes(args.build, model, args.counts, folder)):
@@ -232,22 +247,14 @@ def main():
                     if count > PEERS_UP_TO.get(name, EVALUATED_UP_TO):
                         continue
                     group.append(measure(args.build, name, mesher, surface, count, args.timeout))
-                    table.append(table_row(model, group[-1]))
-                    print(table[-1], flush=True)
+                    every.append(table_row(model, group[-1]))
+                    print(tables.row(every[-1]), flush=True)
                 if 1_000_000 <= count <= 5_000_000:
                     threads += thread_rows(args.build, model, count, surface, args.threads, args.timeout)
-    sections = {"Ratios of filling rates, of whole processes in brackets": ratios(rows),
-                "Exponents of CPU time over elements": exponents(rows, args.models), "Threads": threads,
-                "The closing ladder: what the cavities cost that the front leaves": ladder_costs(rows),
-                "All runs": table}
     minutes = (time.time() - start) / 60
-    text = ("# The volume front against others\n\n" + __doc__.split("\n\n")[2] +
-            f"\n\n{written_by('bench/run.sh volume')} in {minutes:.0f} minutes.\n")
-    for title, lines in sections.items():
-        text += f"\n## {title}\n\n" + "\n".join(lines) + "\n"
-    kept = args.page.read_text().partition(GRADED) if args.page.exists() else ("", "", "")
-    args.page.write_text(text + "\n" + kept[1] + kept[2])
-    print(text[:text.index("## All runs")])
+    tables.write("volume-bench", [
+        "# The volume front against others", "", f"{written_by('bench/run.sh volume')} in {minutes:.0f} minutes. {ABOUT}", "",
+        *shown(ratios(rows), exponents(rows, args.models), threads, ladder_costs(rows), every, args.threads)])
 
 
 if __name__ == "__main__":

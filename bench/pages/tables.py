@@ -48,6 +48,13 @@ def put(name, head, rows, folder=MEASURED):
     return f"[{name}.csv](rows/{name}.csv), {len(rows)} rows"
 
 
+def rows_of(name, folder=MEASURED):
+    """What `put` wrote of earlier runs."""
+    path = folder / f"rows/{name}.csv"
+    with path.open(newline="", encoding="utf-8") as file:
+        return list(csv.reader(file))[1:]
+
+
 def sorted_cells(head, rows, column):
     """The figures of a column by size."""
     at = head.index(column)
@@ -71,7 +78,7 @@ def spread_by(by, head, rows, columns):
     for kind in kinds:
         its = [cells for cells in rows if cells[head.index(by)] == kind]
         found = (three(sorted_cells(head, its, column)) for column in columns)
-        lines.append([kind, len(its), *(f"{median} ({least} – {most})" if least != most else median for least, median, most in found)])
+        lines.append([kind, len(its), *(f"{median} ({least}…{most})" if least != most else median for least, median, most in found)])
     return table([by, "rows", *columns], lines)
 
 
