@@ -102,7 +102,7 @@ class Experiments:
             kept.write_text(json.dumps(origins | {step: ORIGIN}))
 
     def page(self):
-        pathlib.Path("docs/measured/experiments.md").write_text(experiments_page.page(self.work))
+        experiments_page.page(self.work)
         print("written: docs/measured/experiments.md")
 
 

@@ -1,10 +1,11 @@
-"""Writes docs/measured/experiments.md from what experiments.py measured. Every figure in the text comes from the data."""
+"""Writes docs/measured/experiments.md and peers.md from what experiments.py measured. Every figure in the text comes from the data."""
 import csv
 import json
 import pathlib
 
 from importlib.machinery import SourceFileLoader
 
+from pages import tables
 from pages.origin import written_by
 
 METHODS = ["octree-aft", "aft", "octree"]
@@ -16,8 +17,12 @@ CLASS_KEYS = ["beta_below_0.2", "beta_0.2_0.4", "beta_0.4_0.6", "beta_0.6_0.8", 
 
 
 def table(head, rows):
-    lines = ["| " + " | ".join(head) + " |", "|" + " --- |" * len(head)]
-    return "\n".join(lines + ["| " + " | ".join(str(c) for c in row) + " |" for row in rows]) + "\n"
+    return "\n".join(tables.table(head, rows))
+
+
+MODEL_HEAD = ["model", "faces", "method", "elements", "filling s", "all s", "filled/s", "mean β", "min β", "β < .2", "% β ≥ .8", "least angle °", "most °",
+              "volume, %"]
+SKULL_HEAD = ["size", "elements", "boundary triangles", "CPU s", "MB", "mean β", "min β", "β < .2", "% β ≥ .8", "volume, %", "file judged"]
 
 
 def runs_of(folder):
@@ -48,21 +53,20 @@ def quality_table(runs):
     return table(head, rows)
 
 
-def model_table(runs):
+def model_rows(runs):
     rows = []
     for r in runs:
         if r["failure"]:
-            rows.append([r["model"], f"{int(r['faces']):,}", r["method"], "no mesh: " + r["failure"][:100]] + [""] * 7)
+            rows.append([r["model"], f"{int(r['faces']):,}", r["method"], "no mesh: " + r["failure"][:100]] + [""] * 10)
             continue
         n = int(r["elements"])
         rows.append([r["model"], f"{int(r['faces']):,}", r["method"], f"{n:,}", f"{float(r['filling_cpu_s']):.2f}",
                      f"{float(r['total_cpu_s']):.2f}", f"{n / float(r['filling_cpu_s']) / 1e3:,.0f} k",
                      f"{float(r['beta_mean']):.3f}", f"{float(r['beta_min']):.3f}", r[CLASS_KEYS[0]],
                      f"{100 * int(r[CLASS_KEYS[4]]) / n:.1f}",
-                     f"{float(r['dihedral_min_degrees']):.1f} - {float(r['dihedral_max_degrees']):.1f}",
+                     f"{float(r['dihedral_min_degrees']):.1f}", f"{float(r['dihedral_max_degrees']):.1f}",
                      f"{100 * float(r['volume_over_input']) - 100:+.2f}"])
-    return table(["model", "faces", "method", "elements", "filling s", "all s", "filled/s", "mean β", "min β", "β < .2",
-                  "% β ≥ .8", "dihedral angles", "volume, %"], rows)
+    return rows
 
 
 def exponent(folder, method):
@@ -91,6 +95,9 @@ def not_forced(folder, method):
     runs = json.loads(path.read_text())["runs"] if path.exists() else []
     return int(sum(stage["counters"].get("not forced", 0) for r in runs if r["method"] == method and not r["failure"]
                    for stage in r["report"]["stages"]))
+
+
+TARGET_HEAD = ["what", "wanted", "measured", "verdict"]
 
 
 def target_rows(work):
@@ -138,30 +145,38 @@ def skull_table(work):
                      f"{q['beta_classes'][0]} ({100 * q['beta_classes'][0] / n:.4f} %)",
                      f"{100 * q['beta_classes'][4] / n:.1f}", f"{100 * report['volume'] / report['input_volume'] - 100:+.3f}",
                      "valid" if not run["judged"]["defect"] else "**not valid**: " + run["judged"]["defect"][:80]])
-    return table(["size", "elements", "boundary triangles", "CPU s", "MB", "mean β", "min β", "β < .2", "% β ≥ .8",
-                  "volume, %", "file judged"], rows)
+    return table(SKULL_HEAD, rows)
 
 
-def peer_tables(work):
+def peers_runner():
+    return SourceFileLoader("peers_runner", str(pathlib.Path(__file__).with_name("peers.py"))).load_module()
+
+
+def peer_rows(work):
     path = work / "peers.json"
     if not path.exists():
-        return "Not run.\n", "Not run.\n", ""
-    runner = SourceFileLoader("peers_runner", str(pathlib.Path(__file__).with_name("peers.py"))).load_module()
-    rows = json.loads(path.read_text())["rows"]
-    failed = [f"- {r['mesher']} on {r['model']}, surface {'kept' if r['surface'] == 'kept' else 'made anew'}: "
-              f"{r['error'] or r.get('defect')}" for r in rows if r["error"] or r.get("defect")]
-    return runner.table(rows, "kept"), runner.table(rows, "anew"), "\n".join(failed) or "None."
+        return []
+    runner = peers_runner()
+    return [runner.line(row) for row in json.loads(path.read_text())["rows"]]
 
 
 def page(work):
-    compared = runs_of(work / "compare")
-    kept, anew, failed = peer_tables(work)
-    template = pathlib.Path(__file__).with_name("experiments.md.in").read_text()
-    models = len({r["model"] for r in compared})
-    values = {"written": written_by("scripts/experiments.sh", json.loads((work / "origins.json").read_text()).values()), "models": models, "targets": table(["what", "wanted", "measured", ""], target_rows(work)),
-              "quality": quality_table(compared), "runs": model_table(compared),
-              "growth": model_table(runs_of(work / "growth")), "skull": skull_table(work), "kept": kept, "anew": anew,
-              "failed": failed}
-    for key, value in values.items():
-        template = template.replace("{{" + key + "}}", str(value).rstrip("\n"))
-    return template
+    compared, grown = runs_of(work / "compare"), runs_of(work / "growth")
+    origins = json.loads((work / "origins.json").read_text()).values()
+    fill({"written": written_by("scripts/experiments.sh", origins), "models": len({r["model"] for r in compared}),
+          "targets": table(TARGET_HEAD, target_rows(work)), "quality": quality_table(compared), "skull": skull_table(work)},
+         model_rows(compared), model_rows(grown), peer_rows(work))
+
+
+def fill(values, compared, grown, beside):
+    """Writes the pages, and the rows of cells that go to CSV files."""
+    runner = peers_runner()
+    shown = [c for c in MODEL_HEAD[4:] if c != "most °"]
+    values |= {"runs": "\n".join(tables.spread_by("method", MODEL_HEAD, compared, shown)), "each": tables.put("experiments", MODEL_HEAD, compared),
+               "growth": tables.put("experiments-growth", MODEL_HEAD, grown), "peers": tables.put("peers", runner.HEAD, beside)}
+    values |= {surface: "\n".join(runner.shown(beside, surface)) for surface in ("kept", "anew")}
+    for name in ("experiments", "peers"):
+        text = pathlib.Path(__file__).with_name(f"{name}.md.in").read_text(encoding="utf-8")
+        for key, value in values.items():
+            text = text.replace("{{" + key + "}}", str(value))
+        tables.write(name, [text])

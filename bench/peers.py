@@ -4,9 +4,10 @@ Usage: bench/run.sh peers [--models NAME...] [--elements N] [--timeout SECONDS]
 Two comparisons: the surface kept (one that Octafront triangulated to the size, the same for all), and the surface
 triangulated anew by each mesher to the same size. Every mesh is written to a file, and octafront_evaluate judges the
 file. Times are CPU seconds of the whole process, reading and writing included, and of meshing alone where a mesher
-tells it. Prints the tables' rows and writes BUILD/experiments/peers.json, from which docs/measured/experiments.md is made.
+tells it. Prints the tables' rows and writes BUILD/experiments/peers.json, from which docs/measured/peers.md is made.
 """
 import argparse
+import collections
 import json
 import pathlib
 import platform
@@ -15,6 +16,7 @@ import sys
 import tempfile
 
 sys.path.insert(0, str(pathlib.Path(__file__).resolve().parent))
+from pages.tables import spread_by  # noqa: E402
 from peers import cgal, gmsh, netgen, tetgen  # noqa: E402
 from peers.process import finish, run_measured  # noqa: E402
 
@@ -92,32 +94,35 @@ def compare(build, names, elements, timeout):
                     row = {"model": name, "surface": what, "mesher": mesher, "size": size}
                     row |= judged(build, run, source, timeout, what == "kept")
                     rows.append(row)
-                    print(line(row), flush=True)
+                    print(*line(row), sep=" | ", flush=True)
     return rows
 
 
 def line(row):
     """A row of the tables."""
-    cells = [row["model"], row["mesher"]]
+    cells = [row["surface"], row["model"], row["mesher"]]
     if "tets" not in row:
-        return "| " + " | ".join(cells + [f"**no mesh**: {row['error']}".replace("|", "/")] + [""] * 10) + " |"
+        return cells + [""] * 10 + [f"no mesh: {row['error']}"]
     n, classes = row["tets"], row["beta_classes"]
     seconds = row["meshing_seconds"] or row["cpu_seconds"]
     defect = row["defect"]
-    return "| " + " | ".join(cells + [
+    return cells + [
         f"{n:,}", f"{row['cpu_seconds']:.1f}", f"{n / seconds / 1e3:,.0f} k", f"{row['peak_mb']:.0f}",
         f"{row['beta_mean']:.3f}", f"{row['beta_min']:.3f}", f"{100 * classes[0] / n:.3f}", f"{100 * classes[4] / n:.1f}",
-        f"{row['dihedral_min']:.1f} - {row['dihedral_max']:.1f}", f"{row['hausdorff_percent']:.3f}",
-        "valid" if not defect else "**not valid**: " + defect[:60].replace("|", "/")]) + " |"
+        f"{row['dihedral_min']:.1f}", f"{row['dihedral_max']:.1f}", f"{row['hausdorff_percent']:.3f}",
+        "valid" if not defect else "not valid: " + defect[:60]]
 
 
-HEAD = ["model", "mesher", "elements", "process s", "elements/s of meshing", "MB", "mean β", "min β", "% β < .2",
-        "% β > .8", "dihedral angles", "deviation, % of diagonal", "judged"]
+HEAD = ["surface", "model", "mesher", "elements", "process s", "elements/s of meshing", "MB", "mean β", "min β", "% β < .2", "% β > .8", "least angle °",
+        "most °", "deviation, % of diagonal", "judged"]
 
 
-def table(rows, what):
-    lines = ["| " + " | ".join(HEAD) + " |", "|" + " --- |" * len(HEAD)]
-    return "\n".join(lines + [line(r) for r in rows if r["surface"] == what]) + "\n"
+def shown(rows, surface):
+    """Rows of cells: each mesher over the models."""
+    its = [r for r in rows if r[0] == surface]
+    failed = collections.Counter(r[2] for r in its if r[-1] != "valid")
+    said = f" Without a valid mesh: {', '.join(f'{mesher} {n}' for mesher, n in failed.items())}." if failed else ""
+    return [*spread_by("mesher", HEAD, its, [c for c in HEAD[5:-1] if c != "most °"]), "", f"Median, least and most of the meshes that there are.{said}"]
 
 
 def main():
