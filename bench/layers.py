@@ -17,11 +17,13 @@ ROOT = pathlib.Path(__file__).resolve().parents[1]
 sys.path.insert(0, str(ROOT / "scripts/lib"))
 from bounded import run  # noqa: E402
 from pages.origin import written_by  # noqa: E402
+from pages.tables import MEASURED, put, rewrite, table, worst  # noqa: E402
 
-PAGE = ROOT / "docs/measured/layers.md"
 CASES = [(3, 0.1), (8, 0.1), (3, 0.02), (8, 0.02)]
 GROWTH = 1.2
-END = "<!-- end -->"  # what stands behind it on the page stays
+HEAD = ["layers x first height", "total", "valid", "full, %: mean", "median", "worst", "none, %", "SJ, median", "SJ, worst", "angles inside, median",
+        "angles inside, worst", "β inside", "k prisms/CPU s"]
+WORST_HEAD = ["model", "layers", "full, %", "stopped by"]
 
 
 def name_of(case):
@@ -64,23 +66,22 @@ def line(case, rows):
     none = [100 * (1 - faces_weighted(r, "share_with_some")) for r in done]
     inside = [next(q["quality"] for q in r["regions"] if q["name"] != "layers") for r in done]
     speed = sum(map(prisms, done)) / sum(r["stage"] for r in done)
-    return (f"| {name_of(case)} | {total_over_size(case):.2f} | {sum(r['valid'] for r in done)} of {len(rows)} | "
-            f"{statistics.mean(full):.1f} | {statistics.median(full):.1f} | {min(full):.1f} | {statistics.mean(none):.2f} | "
-            f"{statistics.median(map(least_jacobian, done)):.3f}, {min(map(least_jacobian, done)):.3f} | "
-            f"{statistics.median(q['dihedral_min_degrees'] for q in inside):.1f}, {min(q['dihedral_min_degrees'] for q in inside):.1f} | "
-            f"{statistics.median(q['beta_mean'] for q in inside):.3f} | {speed / 1000:,.0f} |")
+    return [name_of(case), f"{total_over_size(case):.2f}", f"{sum(r['valid'] for r in done)} of {len(rows)}", f"{statistics.mean(full):.1f}",
+            f"{statistics.median(full):.1f}", f"{min(full):.1f}", f"{statistics.mean(none):.2f}", f"{statistics.median(map(least_jacobian, done)):.3f}",
+            f"{min(map(least_jacobian, done)):.3f}", f"{statistics.median(q['dihedral_min_degrees'] for q in inside):.1f}",
+            f"{min(q['dihedral_min_degrees'] for q in inside):.1f}", f"{statistics.median(q['beta_mean'] for q in inside):.3f}", f"{speed / 1000:,.0f}"]
 
 
 def total_over_size(case):
     return case[1] * (GROWTH ** case[0] - 1) / (GROWTH - 1)
 
 
-def worst_lines(results):
+def each(results):
     rows = []
     for key, row in results.items():
         model, case = key.split("|")
         if row["status"] != 0:
-            rows.append((-1, f"| {model} | {case} | status {row['status']} | {row['said']} |"))
+            rows.append((-1, [model, case, f"status {row['status']}", row["said"]]))
             continue
         full = 100 * faces_weighted(row, "share_full")
         stopped = {}
@@ -89,26 +90,22 @@ def worst_lines(results):
                 stopped[why] = stopped.get(why, 0) + 100 * part * wall["faces"]
         faces = sum(w["faces"] for w in row["layers"])
         words = ", ".join(f"{why} {part / faces:.1f} %" for why, part in sorted(stopped.items(), key=lambda s: -s[1]))
-        rows.append((full, f"| {model} | {case} | {full:.1f} % | {words} |"))
-    return [text for _, text in sorted(rows)[:20]]
+        rows.append((full, [model, case, f"{full:.1f}", words]))
+    return [cells for _, cells in sorted(rows)]
 
 
-def page(results):
-    by_case = {name_of(c): c for c in CASES}
-    lines = []
-    for name, case in by_case.items():
-        rows = [r for key, r in results.items() if key.endswith("|" + name)]
-        if rows:
-            lines.append(line(case, rows))
-    return "\n".join([
-        "# Boundary layers", "", written_by("bench/run.sh layers"), "",
-        f"{len({k.split('|')[0] for k in results})} clean models, by default sizes, layers on the whole surface: `--layers N --first-part P`, growth "
-        f"{GROWTH:g}, one thread. *Total*: height of all layers over the edge length at the wall. *Full*: faces that have all layers, as high as "
-        "asked, at their three corners. *None*: faces with a corner without any. *SJ*: least scaled Jacobian of whole prisms over all "
-        "layers, median model and worst. *Inside*: what lies between the layers.", "",
-        "| layers x first height | total | valid | full, %: mean | median | worst | none, % | SJ | angles inside: median, worst | β inside | k prisms/CPU s |",
-        "| --- | --- | --- | --- | --- | --- | --- | --- | --- | --- | --- |", *lines, "",
-        "The twenty with least:", "", "| model | layers | full | stopped by |", "| --- | --- | --- | --- |", *worst_lines(results), "", END])
+def shown(sums, rows):
+    """Rows of cells."""
+    return [*table(HEAD, sums), "", "The worst:", "", *worst(WORST_HEAD, rows, "full, %", WORST_HEAD, count=6), "", f"Each: {put('layers', WORST_HEAD, rows)}."]
+
+
+def lines_of(results):
+    by_case = {name_of(c): [r for key, r in results.items() if key.endswith("|" + name_of(c))] for c in CASES}
+    return [f"{written_by('bench/run.sh layers')}.", "",
+            f"{len({k.split('|')[0] for k in results})} clean models, by default sizes, layers on the whole surface: `--layers N --first-part P`, growth "
+            f"{GROWTH:g}, one thread. *Total*: height of all layers over the edge length at the wall. *Full*: faces that have all layers, as high as asked, at "
+            "their three corners. *None*: faces with a corner without any. *SJ*: least scaled Jacobian of whole prisms over all layers. *Inside*: what lies "
+            "between the layers.", "", *shown([line(c, by_case[name_of(c)]) for c in CASES if by_case[name_of(c)]], each(results))]
 
 
 def main():
@@ -133,8 +130,9 @@ def main():
             row = results[key]
             print(key, row["status"], f"{row['cpu']:.1f} s", *([f"{100 * faces_weighted(row, 'share_full'):.1f} %", row["valid"]] if row["status"] == 0 else
                   [row["said"]]), flush=True)
-    kept_words = PAGE.read_text().partition(END)[2] if PAGE.exists() else "\n"
-    PAGE.write_text(page(results) + kept_words)
+    if not a.only:
+        rewrite(MEASURED / "layers.md", "clean models", lines_of(results))
 
 
-main()
+if __name__ == "__main__":
+    main()

@@ -2,7 +2,7 @@
 
 Usage: bench/run.sh layers_flows [--only SUBSTRING] [--vessels FOLDER] [--program OCTAFRONT]
 Bodies: a generated wing, and those of models/flows. Vessels: STL files of FOLDER, as they come: open ends are closed by repair. Each mesh is an OpenFOAM case
-that checkMesh judges. Keeps results in BUILD/layers_flows.json; writes a part of docs/measured/layers.md.
+that checkMesh judges. Keeps results in BUILD/layers_flows.json; writes a part of docs/measured/layers-flows.md.
 """
 import argparse
 import json
@@ -15,7 +15,8 @@ import numpy as np
 
 import layers_bodies as bodies
 from foam_mesh import check_mesh, verdict
-from layers_page import rewrite
+from pages import tables
+from pages.origin import written_by
 
 ROOT = pathlib.Path(__file__).resolve().parents[1]
 sys.path.insert(0, str(ROOT / "scripts/lib"))
@@ -24,7 +25,7 @@ from bounded import run  # noqa: E402
 CASES = [(3, 0.1), (5, 0.1), (3, 0.02)]
 GROWTH = 1.2
 FLOWS = {  # name: (body, edge length on it, more)
-    "wing, NACA 0012, sharp trailing edge": (lambda: bodies.wing()["body"], 0.03, ["--curvature", 30]),
+    "wing": (lambda: bodies.wing()["body"], 0.03, ["--curvature", 30]),
     "motorbike": ("motorBike", 0.01, []), "car": ("simpleCar", 0.06, []), "propeller tip": ("propellerTip", 0.004, []),
     "fan": ("fan", 0.03, []),
 }
@@ -64,14 +65,30 @@ def measure(program, options, case, folder):
     return {"wall": json.loads((folder / "out.json").read_text())["layers"][0], "foam": check_mesh(folder), "cpu": cpu, "memory": memory}
 
 
+HEAD = ["body", "layers x first height", "faces", "cells", "full, %", "stopped by", "SJ", "checkMesh", "n-o", "faces > 70", "skewness", "CPU s"]
+ABOUT = ("Bodies in a box that reaches a diagonal farther on all sides, layers on the body; vessels with layers on their walls, none on their ends (edges of a "
+         "hundredth of the diagonal). Growth 1.2, one thread. The wing is generated (NACA 0012, its trailing edge sharp), the other bodies are those of OpenFOAM's examples, mended "
+         "(`scripts/get-flows.sh`). The vessels are public test data of vmtk (aorta-surface, -open-ends, -segment-2) and vmtk4aneurysms (two models), open ends "
+         "closed by repair. *n-o*: most non-orthogonality, degrees; *skewness*: the most, checkMesh wants at most 4.")
+
+
+def shown(rows):
+    """Rows of cells: the bodies one by one, the vessels together."""
+    bodies = [r for r in rows if not r[0].startswith("vessel")]
+    vessels = [r for r in rows if r[0].startswith("vessel")]
+    shown = ["full, %", "SJ", "n-o", "skewness", "CPU s"]
+    columns = ["body", "layers x first height", "cells", "full, %", "SJ", "checkMesh", "faces > 70", "CPU s"]
+    return [*tables.some(HEAD, bodies, columns), "", f"The {len({r[0] for r in vessels})} vessels:", "",
+            *tables.spread_by("layers x first height", HEAD, vessels, shown), "", f"Each: {tables.put('layers-flows', HEAD, rows)}."]
+
+
 def line(name, case, row):
-    start = f"| {name} | {case} | "
     if "error" in row:
-        return start + f"no mesh: {row['error']} |"
+        return [name, case, "", "", "", f"no mesh: {row['error']}", *[""] * (len(HEAD) - 6)]
     wall, foam = row["wall"], row["foam"]
     stopped = ", ".join(f"{why} {100 * share:.2g} %" for why, share in wall["stopped"].items())
-    return (start + f"{wall['faces']:,} | {foam['cells']:,} | {100 * wall['share_full']:.1f} | {stopped or '-'} | {wall['least_scaled_jacobian']:.3f} | "
-            f"{verdict(foam)} | {foam['non_orthogonality']:.1f} ({foam['severe']}) | {foam['skewness']:.1f} | {row['cpu']:.1f} |")
+    return [name, case, f"{wall['faces']:,}", f"{foam['cells']:,}", f"{100 * wall['share_full']:.1f}", stopped or "-", f"{wall['least_scaled_jacobian']:.3f}",
+            verdict(foam), f"{foam['non_orthogonality']:.1f}", foam["severe"], f"{foam['skewness']:.1f}", f"{row['cpu']:.1f}"]
 
 
 def main():
@@ -97,15 +114,11 @@ def main():
                 folder = pathlib.Path(temporary)
                 results[key] = measure(program, make(folder), case, folder)
             kept.write_text(json.dumps(results))
-            print(line(*key.split("|"), results[key]), flush=True)
+            print(tables.row(line(*key.split("|"), results[key])), flush=True)
     order = [*FLOWS, *sorted({key.split("|")[0] for key in results} - {*FLOWS})]
-    rewrite("flows", "bench/run.sh layers_flows --vessels FOLDER", [
-        "Bodies in a box that reaches a diagonal farther on all sides, layers on the body; vessels with layers on their walls, none on their ends (edges of a "
-        "hundredth of the diagonal). Growth 1.2, one thread. The wing is generated, the other bodies are those of OpenFOAM's examples, mended "
-        "(`scripts/get-flows.sh`). The vessels are public test data of vmtk (aorta-surface, -open-ends, -segment-2) and vmtk4aneurysms (two models), open ends closed "
-        "by repair. *n-o*: most non-orthogonality, degrees; *skewness*: the most, checkMesh wants at most 4.", "",
-        "| body | layers x first height | faces | cells | full, % | stopped by | SJ | checkMesh | n-o (faces > 70) | skewness | CPU s |",
-        "| --- | --- | --- | --- | --- | --- | --- | --- | --- | --- | --- |", *(line(*key.split("|"), results[key]) for key in sorted(results, key=lambda key: order.index(key.split("|")[0])))])
+    rows = [line(*key.split("|"), results[key]) for key in sorted(results, key=lambda key: order.index(key.split("|")[0]))]
+    tables.rewrite(tables.MEASURED / "layers-flows.md", "flows", [f"{written_by('bench/run.sh layers_flows --vessels FOLDER')}. {ABOUT}", "", *shown(rows)])
 
 
-main()
+if __name__ == "__main__":
+    main()

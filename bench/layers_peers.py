@@ -2,7 +2,7 @@
 
 Usage: bench/run.sh layers_peers [--only SUBSTRING] [--by MESHER] [--program OCTAFRONT] [--timeout SECONDS] [--keep FOLDER]
 All get the same surface, edge length, number of layers, first height and growth, and one thread; every mesh becomes an OpenFOAM case and is judged
-by bench/foam_mesh.py and checkMesh. Writes a part of docs/measured/layers.md.
+by bench/foam_mesh.py and checkMesh. Writes a part of docs/measured/layers-flows.md.
 """
 import argparse
 import json
@@ -15,21 +15,19 @@ import numpy as np
 
 import layers_bodies as bodies
 from foam_mesh import FoamMesh, check_mesh, environment, layers_on, new_case, verdict
-from layers_page import rewrite
+from pages import tables
+from pages.origin import written_by
 from peers import gmsh, snappy
 from peers.process import run_measured
 
 ROOT = pathlib.Path(__file__).resolve().parents[1]
 GROWTH = 1.2
-ABOUT = """The same surface, edge length at the wall and far from it, number of layers, first height and growth (1.2), one thread. Every mesh is made an
-OpenFOAM case and judged alike: a layer counts where a prism (its base a triangle or any polygon) stands on the face, or on the layer below, whose height is
-between half and twice what was asked. *All layers*: part of the wall's area that has them all; *whole*: with at least 99 % of the height asked. *SJ*: least scaled
-Jacobian of these prisms (bases of three and four corners; 0: a corner of 180 degrees, below: inside out). *n-o*: most non-orthogonality, degrees.
-
-snappyHexMesh (OpenFOAM 1912): cubes as large as triangles are long, sharp edges extracted, `relativeSizes false`, `featureAngle 130`, `minThickness` half of the
-first height, 50 + 20 iterations, the quality controls of its `meshQualityDict.cfg` with `minTetQuality -1e30`, which their comment advises for layers;
-the rest as in its tutorials. Gmsh 4.8.4: `extrudeBoundaryLayer` on Octafront's triangles of the
-wall, whose making is not in its time (the pipe it meshes anew), HXT between; it checks nothing on the way."""
+HEAD = ["body", "mesher", "wall faces", "cells", "all layers, % of area", "whole", "thickness, %", "SJ", "checkMesh", "n-o", "faces > 70", "CPU s"]
+ABOUT = """The same surface, edge length at the wall and far from it, number of layers, first height and growth (1.2), one thread. Every mesh is made an OpenFOAM case
+and judged alike: a layer counts where a prism stands on the face, or on the layer below, whose height is between half and twice what was asked. *All
+layers*: part of the wall's area that has them all; *whole*: with at least 99 % of the height asked. snappyHexMesh (OpenFOAM 1912): cubes as large as triangles
+are long, sharp edges extracted, the quality controls of its `meshQualityDict.cfg` with `minTetQuality -1e30`, which their comment advises for layers. Gmsh 4.8.4: `extrudeBoundaryLayer` on Octafront's
+triangles of the wall, whose making is not in its time (the pipe it meshes anew), HXT between; it checks nothing on the way."""
 
 
 class Case:
@@ -115,12 +113,17 @@ def judged(case, run, timeout, keep=None):
         folder.mkdir(parents=True, exist_ok=True)
         outcome, walls = run(case, folder, timeout)
         if outcome.error:
-            return f"no mesh: {outcome.error[:70]} | | | | | | | {outcome.cpu_seconds:.1f}"
+            return ["", "", f"no mesh: {outcome.error[:70]}", *[""] * 6, f"{outcome.cpu_seconds:.1f}"]
         foam, mesh = check_mesh(folder), FoamMesh(folder)
         found = layers_on(mesh, walls, case.heights)
         least = found["least_scaled_jacobian"]
-        return (f"{found['faces']:,} | {foam['cells']:,} | {100 * found['full_area']:.1f} | {100 * found['whole_area']:.1f} | {100 * found['thickness']:.1f} | "
-                f"{'-' if least is None else f'{least:.3f}'} | {verdict(foam)} | {foam['non_orthogonality']:.1f} ({foam['severe']}) | {outcome.cpu_seconds:.1f}")
+        return [f"{found['faces']:,}", f"{foam['cells']:,}", f"{100 * found['full_area']:.1f}", f"{100 * found['whole_area']:.1f}", f"{100 * found['thickness']:.1f}",
+                "-" if least is None else f"{least:.3f}", verdict(foam), f"{foam['non_orthogonality']:.1f}", foam["severe"], f"{outcome.cpu_seconds:.1f}"]
+
+
+def shown(rows):
+    columns = ["body", "mesher", "cells", "all layers, % of area", "whole", "SJ", "n-o", "CPU s"]
+    return [*tables.some(HEAD, rows, columns), "", f"And what checkMesh says: {tables.put('layers-peers', HEAD, rows)}."]
 
 
 def main():
@@ -143,12 +146,11 @@ def main():
         for mesher, run in runs.items():
             if a.by not in mesher:
                 continue
-            lines.append(f"| {name} | {mesher} | " + judged(case, run, a.timeout, a.keep and a.keep / f"{name.split()[0]}-{mesher}") + " |")
-            print(lines[-1], flush=True)
-    if a.only or a.by:
-        return
-    rewrite("peers", "bench/run.sh layers_peers", [ABOUT, "", "| body | mesher | wall faces | cells | all layers, % of area | whole | thickness, % | SJ | checkMesh | "
-                                                   "n-o (faces > 70) | CPU s |", "| --- | --- | --- | --- | --- | --- | --- | --- | --- | --- | --- |", *lines])
+            lines.append([name, mesher, *judged(case, run, a.timeout, a.keep and a.keep / f"{name.split()[0]}-{mesher}")])
+            print(tables.row(lines[-1]), flush=True)
+    if not (a.only or a.by):
+        tables.rewrite(tables.MEASURED / "layers-flows.md", "peers", [f"{written_by('bench/run.sh layers_peers')}. {ABOUT}", "", *shown(lines)])
 
 
-main()
+if __name__ == "__main__":
+    main()

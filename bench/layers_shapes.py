@@ -15,7 +15,8 @@ import numpy as np
 
 import layers_bodies as bodies
 from foam_mesh import SINE_OF_60, check_mesh, verdict
-from layers_page import rewrite
+from pages import tables
+from pages.origin import written_by
 
 sys.path.insert(0, str(pathlib.Path(__file__).resolve().parents[1] / "scripts/lib"))
 from bounded import run  # noqa: E402
@@ -92,6 +93,9 @@ def flatness(body, mesh, names):
     return worst / diagonal
 
 
+HEAD = ["body", "layers x first height", "faces", "full, %", "stopped by", "growth off by", "ends off by", "SJ", "checkMesh", "n-o", "skewness", "CPU s"]
+
+
 def measure(program, name, case, folder):
     make, size, on = SHAPES[name]
     layers, part = case
@@ -103,16 +107,26 @@ def measure(program, name, case, folder):
                                 "--growth", GROWTH, *(["--on", on] if on else []), "-q", "--threads", 1, "--json", folder / "out.json",
                                 "-o", folder / "out.vtu", "-o", folder / "case/constant/polyMesh"], 120)
     if status != 0:
-        return f"| {name} | {layers} x 1/{round(1 / part)} | no mesh: {said.splitlines()[-1]} |"
+        return [name, f"{layers} x 1/{round(1 / part)}", "", "", f"no mesh: {said.splitlines()[-1]}", *[""] * (len(HEAD) - 5)]
     wall = json.loads((folder / "out.json").read_text())["layers"][0]
     mesh = meshio.read(folder / "out.vtu")
     wedges = wedges_of(mesh)
     bare = [n for n in body if on == "wall" and n != "wall"]
     foam = check_mesh(folder / "case")
     stopped = ", ".join(f"{why} {100 * share:.2g} %" for why, share in wall["stopped"].items())
-    return (f"| {name} | {layers} x 1/{round(1 / part)} | {wall['faces']:,} | {100 * wall['share_full']:.2f} | {stopped or '-'} | "
-            f"{growth_error(mesh.points, columns_of(wedges)):.1e} | {f'{flatness(body, mesh, bare):.1e}' if bare else '-'} | "
-            f"{least_scaled_jacobian(mesh.points, wedges):.3f} | {verdict(foam)} | {foam['non_orthogonality']:.1f} | {foam['skewness']:.1f} | {cpu:.1f} |")
+    return [name, f"{layers} x 1/{round(1 / part)}", f"{wall['faces']:,}", f"{100 * wall['share_full']:.2f}", stopped or "-",
+            f"{growth_error(mesh.points, columns_of(wedges)):.1e}", f"{flatness(body, mesh, bare):.1e}" if bare else "-",
+            f"{least_scaled_jacobian(mesh.points, wedges):.3f}", verdict(foam), f"{foam['non_orthogonality']:.1f}", f"{foam['skewness']:.1f}", f"{cpu:.1f}"]
+
+
+ABOUT = ("Generated bodies, growth 1.2, layers on all of it or, where ends are flat, on the wall alone. *Growth*: the most that the height of a layer over the one "
+         "below is off, measured between the nodes of all columns. *Ends*: the farthest that a node of a flat end is off its plane, over the diagonal. *SJ*: least "
+         "scaled Jacobian of all wedges, computed from their nodes. *n-o*: most non-orthogonality, degrees; *skewness*: the most, checkMesh wants at most 4 of it.")
+
+
+def shown(rows):
+    return [*tables.spread_by("layers x first height", HEAD, rows, ["full, %", "growth off by", "ends off by", "SJ", "n-o", "skewness", "CPU s"]), "",
+            "Least full:", "", *tables.worst(HEAD, rows, "full, %", [*HEAD[:5], *HEAD[7:11]], count=6), "", f"Each: {tables.put('layers-shapes', HEAD, rows)}."]
 
 
 def main():
@@ -127,15 +141,10 @@ def main():
             if a.only in name:
                 with tempfile.TemporaryDirectory() as folder:
                     lines.append(measure((a.program or a.build / "cli/octafront").resolve(), name, case, pathlib.Path(folder)))
-                print(lines[-1], flush=True)
+                print(tables.row(lines[-1]), flush=True)
     if not a.only:
-        rewrite("shapes", "bench/run.sh layers_shapes", [
-            "Generated bodies, growth 1.2, layers on all of it or, where ends are flat, on the wall alone. *Growth*: the most that the height of a "
-            "layer over the one below is off, measured between the nodes of all columns. *Ends*: the farthest that a node of a flat end is "
-            "off its plane, over the diagonal. *SJ*: least scaled Jacobian of all wedges, computed from their nodes. *n-o*: most non-orthogonality, degrees; *skewness*: the most."
-            " checkMesh wants at most 4 of it.", "",
-            "| body | layers x first height | faces | full, % | stopped by | growth off by | ends off by | SJ | checkMesh | n-o | skewness | CPU s |",
-            "| --- | --- | --- | --- | --- | --- | --- | --- | --- | --- | --- | --- |", *lines])
+        tables.rewrite(tables.MEASURED / "layers.md", "shapes", [f"{written_by('bench/run.sh layers_shapes')}. {ABOUT}", "", *shown(lines)])
 
 
-main()
+if __name__ == "__main__":
+    main()

@@ -1,7 +1,7 @@
 """A laminar flow through a pipe, solved by OpenFOAM's simpleFoam on meshes with boundary layers and without, of about equally many cells, against Poiseuille.
 
 Usage: bench/run.sh layers_solved [--program OCTAFRONT]
-Writes a part of docs/measured/layers.md.
+Writes docs/measured/layers-solved.md.
 """
 import argparse
 import pathlib
@@ -14,7 +14,8 @@ import numpy as np
 
 import layers_bodies as bodies
 from foam_mesh import FoamMesh, check_mesh, environment, write_dictionary
-from layers_page import rewrite
+from pages import tables
+from pages.origin import written_by
 
 sys.path.insert(0, str(pathlib.Path(__file__).resolve().parents[1] / "scripts/lib"))
 from bounded import run  # noqa: E402
@@ -160,8 +161,21 @@ def solved(program, options):
 
 
 def line(what, row):
-    return (f"| {what} | {row['cells']:,} | {row['n-o']:.0f} | {100 * row['section']:+.2f} | {100 * row['velocity']:.2f} | {100 * row['gradient']:+.2f} | "
-            f"{100 * row['shear_mean']:+.2f} | {100 * row['shear']:.2f} | {row['iterations']} | {row['seconds']:.0f} |")
+    return [what, f"{row['cells']:,}", f"{row['n-o']:.0f}", f"{100 * row['section']:+.2f}", f"{100 * row['velocity']:.2f}", f"{100 * row['gradient']:+.2f}",
+            f"{100 * row['shear_mean']:+.2f}", f"{100 * row['shear']:.2f}", row["iterations"], f"{row['seconds']:.0f}"]
+
+
+HEAD = ["mesh", "cells", "n-o", "section off, %", "velocity off, %", "dp/dz off, %", "shear, mean off, %", "shear off, %", "iterations", "s"]
+
+
+ABOUT = (f"A pipe of radius 1 and length {LENGTH:g}, Reynolds number {2 * MEAN * RADIUS / VISCOSITY:.0f}, Poiseuille's profile at the inlet; 5 layers of 1/10, growth 1.3, on "
+         "its wall, ends bare. OpenFOAM's simpleFoam (v1912), second order throughout, until residuals fall below 1e-6; compared from .4 to .8 of the length, with "
+         "Poiseuille's flow of the same flux through a circle as large as the mesh's section (*section*: that over pi). *Velocity*: root mean square over the "
+         "volume; *dp/dz*: slope of the pressure; *shear*: on the wall, mean, and root mean square over its area.")
+
+
+def shown(rows):
+    return [*tables.table(HEAD, rows), "", f"As a file: {tables.put('layers-solved', HEAD, rows)}."]
 
 
 def main():
@@ -174,18 +188,13 @@ def main():
     for size in SIZES:
         layered = solved(program, ["--size", size, *LAYERS])
         lines.append(line(f"edges {size}, 5 layers", layered))
-        print(lines[-1], flush=True)
+        print(tables.row(lines[-1]), flush=True)
         lines.append(line("as many cells, no layers", solved(program, ["--elements", layered["cells"]])))
-        print(lines[-1], flush=True)
+        print(tables.row(lines[-1]), flush=True)
         lines.append(line(f"edges {size}, no layers", solved(program, ["--size", size])))
-        print(lines[-1], flush=True)
-    rewrite("solved", "bench/run.sh layers_solved", [
-        f"A pipe of radius 1 and length {LENGTH:g}, Reynolds number {2 * MEAN * RADIUS / VISCOSITY:.0f}, Poiseuille's profile at the inlet; 5 layers of 1/10, growth 1.3, on its wall, "
-        "ends bare. OpenFOAM's simpleFoam (v1912), second order throughout, until residuals fall below 1e-6; compared from .4 to .8 of the length, with Poiseuille's flow of "
-        "the same flux through a circle as large as the mesh's section (*section*: that over pi). *Velocity*: root mean square over the volume, of the exact one's; *dp/dz*: slope "
-        "of the pressure; *shear*: on the wall, mean, and root mean square over its area.", "",
-        "| mesh | cells | n-o | section off, % | velocity off, % | dp/dz off, % | shear, mean off, % | shear off, % | iterations | s |",
-        "| --- | --- | --- | --- | --- | --- | --- | --- | --- | --- |", *lines])
+        print(tables.row(lines[-1]), flush=True)
+    tables.write("layers-solved", ["# A laminar pipe, with layers and without", "", f"{written_by('bench/run.sh layers_solved')}. {ABOUT}", "", *shown(lines)])
 
 
-main()
+if __name__ == "__main__":
+    main()

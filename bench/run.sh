@@ -28,7 +28,7 @@
 #                            and Netgen; --models FOLDER: other files  -> docs/measured/cad.md
 #   bench/run.sh layers      boundary layers on all clean models: coverage, validity, quality, speed -> docs/measured/layers.md
 #   bench/run.sh layers_shapes   the same on bodies whose layers are known; layers_flows: around bodies, in vessels; layers_peers: beside snappyHexMesh
-#                            and Gmsh; layers_solved: a laminar pipe with and without -> docs/measured/layers.md
+#                            and Gmsh (-> docs/measured/layers-flows.md); layers_solved: a laminar pipe with and without -> docs/measured/layers-solved.md
 #   bench/run.sh inside      sheets, lines and points in a block, beside Gmsh and TetGen     -> docs/measured/inside.md
 #   bench/run.sh periodic    periodic cells with and without periods, beside Gmsh, solved    -> docs/measured/periodic.md
 #   bench/run.sh ranks       one mesh by 1, 2, 4 and 8 processes: memory, bytes, imbalance, what all do alike -> docs/measured/ranks.md

@@ -24,6 +24,11 @@ def table(head, rows):
     return [row(head), "|" + " --- |" * len(head), *map(row, rows)]
 
 
+def some(head, rows, columns):
+    """A table of the given columns."""
+    return table(columns, [[cells[head.index(c)] for c in columns] for cells in rows])
+
+
 def number(cell):
     """The figure of a cell of one figure and a unit, if any; None of other cells."""
     text = str(cell).strip("*` ")
@@ -87,7 +92,7 @@ def worst(head, rows, column, columns, most=False, count=10):
     at = head.index(column)
     known = [cells for cells in rows if len(cells) > at and number(cells[at]) is not None]
     known.sort(key=lambda cells: number(cells[at]), reverse=most)
-    return table(columns, [[cells[head.index(c)] for c in columns] for cells in known[:count]])
+    return some(head, known[:count], columns)
 
 
 def write(page, lines, folder=MEASURED):
