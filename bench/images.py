@@ -2,7 +2,7 @@
 
 Usage: bench/run.sh images [--volumes NAME...] [--timeout SECONDS] [--peers] [--beside-only] [--page]
 Volumes are those of scripts/get-volumes.sh. Each is meshed on one thread; octafront_judge_image compares every label of the mesh with
-its voxels. Keeps each result in BUILD/images.json as soon as it is there; --page writes the tables of docs/measured/images-status.md from all that
+its voxels. Keeps each result in BUILD/images.json as soon as it is there; --page writes docs/measured/images-status.md from all that
 are in it. With --peers also CGAL (libcgal-dev), on images turned into INR: labels kept, pieces, volumes, quality, elements per CPU second
 of the whole process, reading and writing included.
 """
@@ -10,7 +10,6 @@ import argparse
 import gzip
 import json
 import pathlib
-import re
 import struct
 import subprocess
 import sys
@@ -19,6 +18,7 @@ import tempfile
 BENCH = pathlib.Path(__file__).resolve().parent
 sys.path.insert(0, str(BENCH))
 from dicom_series import write_series  # noqa: E402
+from pages import tables  # noqa: E402
 from pages.origin import ORIGIN, written_by  # noqa: E402
 from peers.process import finish, run_measured  # noqa: E402
 
@@ -43,7 +43,6 @@ VOLUMES = [("liver, 6 mm", "liver.nrrd", ["--size", "6"], []),
            ("Cranium as DICOM", "Cranium.inv3", ["--iso", "226"], ["iso=226"])]
 # Volumes above that CGAL meshes too, at this size.
 PEERS = {"liver, 6 mm": 6, "liver, 3 mm": 3, "KmeansTest, 6 mm": 6, "HarvardOxford, 4 mm": 4}
-PAGE = BENCH.parent / "docs/measured/images-status.md"
 LARGE = 1000  # voxels: what labels of so many must keep
 
 
@@ -101,45 +100,28 @@ def row_of(name, outcome, found):
     return {**row, **found} if found else row
 
 
-def summary(row):
-    """What a table shows of a mesh."""
+HEAD = ["volume", "labels kept", "elements", "CPU s", "elements/s", "MB", "worst volume error", "labels above 1 %", "least Dice", "below .97", "Hausdorff, voxels",
+        "above 1", "pieces in", "pieces out", "Euler number kept", "mean β", "least β", "least angle °", "most °", "below .1 or 8°", "below .4", "forced by",
+        "not forced", "origin"]
+
+
+def cells(row):
+    """What the CSV files have of a mesh."""
+    if "labels" not in row:
+        return [row["name"], row["error"], *[""] * (len(HEAD) - 3), row.get("origin", "")]
     labels = row["labels"]
     kept = [l for l in labels if l["tets"] > 0]
     large = [l for l in kept if l["voxels"] >= LARGE]
-    errors = sorted((abs(l["volume_out"] / l["volume_in"] - 1) for l in large), reverse=True) or [0]
-    dice = sorted(l["dice"] for l in large) or [1]
-    distances = sorted((l["hausdorff"] or 0 for l in kept), reverse=True) or [0]
-    return {"labels": f"{len(kept)} of {len(labels)}",
-            "volume": f"{100 * errors[0]:.2f} % ({sum(e > .01 for e in errors)} of {len(large)})",
-            "dice": f"{dice[0]:.3f} ({sum(d < .97 for d in dice)})",
-            "hausdorff": f"{distances[0]:.2f} ({sum(d > 1 for d in distances)})",
-            "pieces": f"{sum(l['pieces'][0] for l in kept)} / {sum(l['pieces'][1] for l in kept)}",
-            "euler": f"{sum(l['euler'][0] == l['euler'][1] for l in kept)}",
-            "beta": f"{row['beta_mean']:.3f}, {row['beta_min']:.3f}",
-            "angles": f"{row['dihedral_min']:.1f} - {row['dihedral_max']:.1f}",
-            "poor": f"{row['poor']}"}
-
-
-def table(rows):
-    lines = ["| volume | labels kept | elements | CPU s | elements/s | MB | volume error (above 1 %) | Dice (below .97) | Hausdorff, voxels (above 1) "
-             "| pieces in / out | Euler number kept | β mean, least | dihedral angles | below .1 or 8° |", "| --- " * 14 + "|"]
-    for row in rows:
-        if "labels" not in row:
-            lines.append(f"| {row['name']} | {row['error']} |" + " |" * 12)
-            continue
-        s = summary(row)
-        speed = row["elements"] / max(row["cpu_seconds"], 1e-9)
-        lines.append(f"| {row['name']} | {s['labels']} | {row['elements']:,} | {row['cpu_seconds']:.1f} | {speed:,.0f} | {row['peak_mb']:.0f} | "
-                     f"{s['volume']} | {s['dice']} | {s['hausdorff']} | {s['pieces']} | {s['euler']} | {s['beta']} | {s['angles']} | {s['poor']} |")
-    return lines
-
-
-def poor_elements(rows):
-    lines = ["| volume | below .4 | forced by | not forced |", "| --- " * 4 + "|"]
-    for row in rows:
-        if "below_04" in row:
-            lines.append(f"| {row['name']} | {row['below_04']:,} | {', '.join(row['forced']) or '-'} | {row['not_forced']:,} |")
-    return lines
+    errors = [abs(l["volume_out"] / l["volume_in"] - 1) for l in large] or [0]
+    dice = [l["dice"] for l in large] or [1]
+    distances = [l["hausdorff"] or 0 for l in kept] or [0]
+    return [row["name"], f"{len(kept)} of {len(labels)}", f"{row['elements']:,}", f"{row['cpu_seconds']:.1f}",
+            f"{row['elements'] / max(row['cpu_seconds'], 1e-9):,.0f}", f"{row['peak_mb']:.0f}", f"{100 * max(errors):.2f} %",
+            f"{sum(e > .01 for e in errors)} of {len(large)}", f"{min(dice):.3f}", sum(d < .97 for d in dice), f"{max(distances):.2f}",
+            sum(d > 1 for d in distances), sum(l["pieces"][0] for l in kept), sum(l["pieces"][1] for l in kept),
+            sum(l["euler"][0] == l["euler"][1] for l in kept), f"{row['beta_mean']:.3f}", f"{row['beta_min']:.3f}", f"{row['dihedral_min']:.1f}",
+            f"{row['dihedral_max']:.1f}", row["poor"], f"{row['below_04']:,}" if "below_04" in row else "", ", ".join(row.get("forced", [])),
+            f"{row['not_forced']:,}" if "not_forced" in row else "", row.get("origin", "")]
 
 
 class Results:
@@ -152,7 +134,7 @@ class Results:
     def add(self, kind, row):
         self.rows[kind][row["name"]] = row
         self.file.write_text(json.dumps(self.rows, indent=1))
-        print("\n".join(table([row])[2:]), flush=True)
+        print(tables.row(cells(row)), flush=True)
 
     def of(self, kind, names):
         return [self.rows[kind][name] for name in names if name in self.rows[kind]]
@@ -215,31 +197,33 @@ def main():
         write_page(results)
 
 
-def part_of_page(command, shown, lines, old, names):
-    """Origin and table, with the rows of the old part whose volumes were not measured now, all in the order of `names`."""
-    def by_name(rows):
-        return {row.split(" | ")[0].removeprefix("| "): row for row in rows if row.startswith("| ")}
-    before, now = by_name(old.splitlines()), by_name(lines[2:])
-    origins = {row["origin"] for row in shown if "origin" in row}
-    if any(name in before and name not in now for name in names):
-        origins.update(re.search(r"\((commit .*)\)", old)[1].split("; "))
-    rows = before | now
-    return "\n".join([f"{written_by(command, origins)}.", "", *lines[:2], *(rows[name] for name in names if name in rows)])
+def with_earlier(name, rows, order):
+    """The rows, and those of the CSV file of volumes that were not measured now, in order."""
+    by_name = {cells[0]: cells for cells in [*tables.rows_of(name), *rows]}
+    return [by_name[name] for name in order if name in by_name]
 
 
 def write_page(results):
-    """Each table stands between its marks; the text around them is written by hand."""
-    page, names = PAGE.read_text(), [name for name, *_ in VOLUMES]
-    rows, beside = results.of("alone", names), side_by_side(results)
+    names = [name for name, *_ in VOLUMES]
     both = [f"{name}: {who}" for name in PEERS for who in ("Octafront", "CGAL 5.5")]
-    alone = "bench/run.sh images --page"
-    for mark, *part, order in (("volumes", alone, rows, table(rows), names),
-                               ("poor elements", alone, rows, poor_elements(rows), names),
-                               ("beside CGAL", "bench/run.sh images --peers --page", beside, table(beside), both)):
-        before, rest = page.split(f"<!-- {mark} -->\n")
-        old, behind = rest.split("<!-- end -->", 1)
-        page = before + f"<!-- {mark} -->\n" + part_of_page(*part, old, order) + "\n<!-- end -->" + behind
-    PAGE.write_text(page)
+    rows = with_earlier("images", map(cells, results.of("alone", names)), names)
+    beside = with_earlier("images-beside", map(cells, side_by_side(results)), both)
+    origins = {origin for cells in rows for origin in cells[-1].split("; ") if origin}
+    tables.write("images-status", ["# Images: what was measured", "", f"{written_by('bench/run.sh images --peers --page', origins)}. {ABOUT}", "", *shown(rows, beside)])
+
+
+ABOUT = """Volumes of `scripts/get-volumes.sh`, one thread, each label judged against its voxels (`octafront_judge_image`). Volume errors and Dice are of
+labels of 1,000 voxels and more; the two-sided Hausdorff distance, in voxels, is of all labels. Nets alone, before sizes, are
+measured in `docs/how/image-surfaces.md`."""
+
+
+def shown(rows, beside):
+    """Rows of cells."""
+    columns = ["volume", "labels kept", "elements", "CPU s", "worst volume error", "least Dice", "Hausdorff, voxels", "below .1 or 8°"]
+    return [*tables.some(HEAD, rows, columns), "", f"With pieces, shapes, how many labels miss 1 % and .97, and what forces elements below .4: {tables.put('images', HEAD, rows)}.", "",
+            "Beside CGAL 5.5's Mesh_3, with the criteria of its manual's example in proportion to the size (facets of 6, distance 4, cells of 8):", "",
+            *tables.some(HEAD, beside, columns), "",
+            f"Each: {tables.put('images-beside', HEAD, beside)}."]
 
 
 if __name__ == "__main__":
