@@ -12,10 +12,10 @@ import tempfile
 import meshio
 import numpy as np
 
+from pages import tables
 from pages.origin import written_by
 from peers.process import run_measured
 
-ROOT = pathlib.Path(__file__).resolve().parents[1]
 
 
 def write_off(path, points, faces):
@@ -269,7 +269,7 @@ def points_found(points, case):
 
 def row(case, name, outcome, file):
     if outcome.error or not file.exists():
-        return f"| {case.name} | {name} | {outcome.error or 'no mesh'} | | | | | {outcome.cpu_seconds:.1f} | |"
+        return [case.name, name, outcome.error or "no mesh", *[""] * 5, f"{outcome.cpu_seconds:.1f}", ""]
     found = judged(file, case)
     parts = []
     if case.sheets:
@@ -278,10 +278,11 @@ def row(case, name, outcome, file):
         parts.append(f"length {found['length']:.6g} of {case.length():.6g}")
     if len(case.points):
         parts.append(f"{found['points']} of {len(case.points)} points")
-    return (f"| {case.name} | {name} | {', '.join(parts)} | {abs(found['volume'] - 1):.0e} | {found['tets']:,} | {found['beta']:.3f} | "
-            f"{found['least']:.1f} - {found['most']:.1f} | {outcome.cpu_seconds:.2f} | {found['tets'] / outcome.cpu_seconds / 1e3:.0f} k |")
+    return [case.name, name, ", ".join(parts), f"{abs(found['volume'] - 1):.0e}", f"{found['tets']:,}", f"{found['beta']:.3f}", f"{found['least']:.1f}",
+            f"{found['most']:.1f}", f"{outcome.cpu_seconds:.2f}", f"{found['tets'] / outcome.cpu_seconds / 1e3:.0f} k"]
 
 
+HEAD = ["case", "mesher", "found", "volume off", "elements", "mean β", "least angle °", "most °", "CPU s", "elements / CPU s"]
 ABOUT = """# Sheets, lines and points inside
 
 {written}: a unit cube at size .05, one thread, CPU seconds of whole processes. Gmsh 4.8.4
@@ -289,10 +290,12 @@ cuts the cube by OpenCASCADE (`fragment`), meshes with HXT and optimises, throug
 faces that are no sides of the cube, length of the edges inside, points that are nodes at their place. The area of fractures is that inside of the cube, by
 clipping each polygon. TetGen 1.5.0 wants facets that fit together, and fractures cross: it gets the triangles that Octafront makes of them and of the cube, whose making is not in its time, and keeps them (`-pqYa`);
 lines are its segments, points its nodes.
-
-| case | mesher | found | volume off | elements | mean β | dihedral angles | CPU s | elements / CPU s |
-| --- | --- | --- | --- | --- | --- | --- | --- | --- |
 """
+
+
+def shown(rows):
+    """Rows of cells."""
+    return [*tables.some(HEAD, rows, [c for c in HEAD if c not in ("volume off", "most °")]), "", f"With volumes: {tables.put('inside', HEAD, rows)}."]
 
 
 def main():
@@ -313,13 +316,10 @@ def main():
                                  ("Gmsh", run_gmsh(case, folder, options.timeout)),
                                  ("TetGen", run_tetgen(case, program, folder, options.timeout))):
                 rows.append(row(case, mesher, *made))
-                print(rows[-1], flush=True)
+                print(tables.row(rows[-1]), flush=True)
     if options.only:
         return
-    page = ROOT / "docs" / "measured" / "inside.md"
-    said = page.read_text().split("\n## What it says", 1)[1:] if page.exists() else []
-    page.write_text(ABOUT.format(written=written_by("bench/run.sh inside")) + "\n".join(rows) + "\n" +
-                    "".join("\n## What it says" + text for text in said))
+    tables.write("inside", [ABOUT.format(written=written_by("bench/run.sh inside")), *shown(rows)])
 
 
 if __name__ == "__main__":

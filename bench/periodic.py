@@ -14,10 +14,10 @@ import numpy as np
 
 import sector
 from inside import block, quality, write_off
+from pages import tables
 from pages.origin import written_by
 from peers.process import run_measured
 
-ROOT = pathlib.Path(__file__).resolve().parents[1]
 MATRIX, BALLS = (1.0, 0.3), (10.0, 0.2)  # Young's modulus, Poisson's ratio
 BALL = 0.3
 
@@ -95,16 +95,21 @@ def fifty_places(radius):
 
 
 def ours(folder, program, timeout, name, source, *options, pairs=None):
-    pairs = pairs or pairs_in_words
+    pairs = pairs or pairs_of
     report = folder / "report.json"
     outcome = run_measured([program, "mesh", source, *options, "--threads", 1, "-q", "-o", folder / "ours.msh", "-o", folder / "ours.inp",
                             "--json", report], folder, timeout)
     if outcome.error:
-        return f"| {name} | {outcome.error} {outcome.log.strip()[:200]} | | | | |"
-    found = quality(tets_of(folder / "ours.msh"))
+        return [name, f"{outcome.error} {outcome.log.strip()[:200]}", *[""] * (len(HEAD) - 2)]
     tets = json.loads(report.read_text())["tets"]
-    return (f"| {name} | {tets:,} | {found['beta']:.4f} | {found['least']:.1f} - {found['most']:.1f} | {outcome.cpu_seconds:.2f} | "
-            f"{pairs(folder / 'ours.msh')} |")
+    return row_of(name, tets, quality(tets_of(folder / "ours.msh")), outcome, pairs(folder / "ours.msh"))
+
+
+HEAD = ["case", "elements", "mean β", "least angle °", "most °", "CPU s", "pairs", "without", "off by"]
+
+
+def row_of(name, tets, found, outcome, pairs):
+    return [name, f"{tets:,}", f"{found['beta']:.4f}", f"{found['least']:.1f}", f"{found['most']:.1f}", f"{outcome.cpu_seconds:.2f}", *pairs]
 
 
 def tets_of(file):
@@ -112,7 +117,7 @@ def tets_of(file):
     return mesh.points[np.concatenate([c.data for c in mesh.cells if c.type == "tetra"])]
 
 
-def pairs_in_words(file):
+def pairs_of(file):
     """Nodes at both ends of each axis: how many there are, how many have a partner, and how far from its place."""
     mesh = meshio.read(file)
     p = mesh.points[np.unique(np.concatenate([c.data for c in mesh.cells if c.type == "tetra"]))]
@@ -128,19 +133,17 @@ def pairs_in_words(file):
             lonely += not near
             worst = max([worst, *(np.abs(q[others] - n[others]).max() for n in near[:1])])
         words.append(f"{len(high)}")
-    return f"{' + '.join(words)}, {lonely} without, off by {worst:.1g}"
+    return " + ".join(words), lonely, f"{worst:.1g}"
 
 
 def gmsh(folder, timeout, name, program, *arguments, pairs=None):
-    pairs = pairs or pairs_in_words
+    pairs = pairs or pairs_of
     (folder / "by_gmsh.py").write_text(program)
     outcome = run_measured(["/usr/bin/python3", folder / "by_gmsh.py", folder, *arguments], folder, timeout)
     if outcome.error:
-        return f"| {name} | {outcome.error} | | | | |"
+        return [name, outcome.error, *[""] * (len(HEAD) - 2)]
     tets = tets_of(folder / "gmsh.msh")
-    found = quality(tets)
-    return (f"| {name} | {len(tets):,} | {found['beta']:.4f} | {found['least']:.1f} - {found['most']:.1f} | "
-            f"{outcome.cpu_seconds:.2f} | {pairs(folder / 'gmsh.msh')} |")
+    return row_of(name, len(tets), quality(tets), outcome, pairs(folder / "gmsh.msh"))
 
 
 class Deck:
@@ -241,7 +244,7 @@ def voronoi(path, n=40, seeds=12):
         out.write(labels.astype(np.uint8).transpose(2, 1, 0).tobytes())
 
 
-def file_pairs_in_words(deck):
+def file_pairs(deck):
     """By the equations of an Abaqus file, for what lies on no straight faces."""
     copies = set()
     lines = iter(deck.read_text().splitlines())
@@ -252,7 +255,7 @@ def file_pairs_in_words(deck):
         words = line.split(",")
         if len(words) > 2 and words[2].strip() == "1.":
             copies.add(int(words[0]))
-    return f"{len(copies)} in the file" if copies else ""
+    return (f"{len(copies)} in the file", "", "") if copies else ("", "", "")
 
 
 def turned_ring(folder, program):
@@ -273,10 +276,12 @@ ABOUT = """# Periodic cells
 should be equal. *with*, *without*: `--periodic xyz` or not. The ball of radius .3 sits at a corner of the cell: eight pieces of one region. Gmsh 4.8.4 cuts its spheres by OpenCASCADE
 and pairs its faces with `setPeriodic`. A sector of 30 degrees of a ring of radius 1 to 2, .1 thick, is paired by `--periodic 30@z`: nodes on the side that is turned; the one with curved sides is 1 high, its
 nodes and those of images are counted by the equations of the file.
-
-| case | elements | mean β | dihedral angles | CPU s | pairs |
-| --- | --- | --- | --- | --- | --- |
 """
+
+
+def shown(rows):
+    """Rows of cells."""
+    return [*tables.some(HEAD, rows, [c for c in HEAD if c not in ("most °", "pairs")]), "", f"With the numbers of pairs: {tables.put('periodic', HEAD, rows)}."]
 
 
 def main():
@@ -291,7 +296,7 @@ def main():
 
     def add(line):
         rows.append(line)
-        print(line, flush=True)
+        print(tables.row(line), flush=True)
 
     with tempfile.TemporaryDirectory() as name:
         folder = pathlib.Path(name)
@@ -316,28 +321,26 @@ def main():
         for size in (0.05, 0.025):
             for word, more in (("with", ("--periodic", f"{sector.DEGREES:g}@z")), ("without", ())):
                 add(ours(folder, program, options.timeout, f"sector of a ring, size {size}, {word}", folder / "sector.obj", "--size", size, *more,
-                         pairs=sector.pairs_in_words))
+                         pairs=sector.pairs_of))
             add(gmsh(folder, options.timeout, f"the same, Gmsh, size {size}", sector.GMSH, size, sector.INNER, sector.OUTER, sector.HIGH,
-                     sector.DEGREES, pairs=sector.pairs_in_words))
+                     sector.DEGREES, pairs=sector.pairs_of))
         sector.write_sector(folder / "blade.obj", twist=0.4, high=1.0, around=60)
         for word, more in (("with", ("--periodic", f"{sector.DEGREES:g}@z")), ("without", ())):
             add(ours(folder, program, options.timeout, f"sector with curved sides, size .05, {word}", folder / "blade.obj", "--size", 0.05, *more,
-                     pairs=lambda file: file_pairs_in_words(file.with_suffix(".inp"))))
+                     pairs=lambda file: file_pairs(file.with_suffix(".inp"))))
         voronoi(folder / "cells.nrrd")
         for word, more in (("with", ("--periodic", "xyz")), ("without", ())):
             add(ours(folder, program, options.timeout, f"image of 12 labels, 40³ voxels, size 2, {word}", folder / "cells.nrrd", "--image", "labels",
-                     "--size", 2, *more, pairs=lambda file: file_pairs_in_words(file.with_suffix(".inp"))))
+                     "--size", 2, *more, pairs=lambda file: file_pairs(file.with_suffix(".inp"))))
         ring = "" if options.no_solver else turned_ring(folder, program)
         print(ring)
-    page = ROOT / "docs" / "measured" / "periodic.md"
-    said = page.read_text().split("\n## What it says", 1)[1:] if page.exists() else []
-    text = ABOUT.format(written=written_by("bench/run.sh periodic")) + "\n".join(rows) + "\n"
+    lines = [ABOUT.format(written=written_by("bench/run.sh periodic")), *shown(rows)]
     if solved:
-        text += ("\n**Moduli of the cell with 50 balls**, matrix and balls with Young's moduli 1 and 10, Poisson's ratios .3 and .2, by CalculiX with the "
-                 f"equations of the file, stretched four ways; bounds of Hashin and Shtrikman: {solved}\n")
+        lines += ["", "**Moduli of the cell with 50 balls**, matrix and balls with Young's moduli 1 and 10, Poisson's ratios .3 and .2, by CalculiX with the equations "
+                  f"of the file, stretched four ways; bounds of Hashin and Shtrikman: {solved}"]
     if ring:
-        text += f"\n**A ring that turns**, by a sector of it: {ring}\n"
-    page.write_text(text + "".join("\n## What it says" + rest for rest in said))
+        lines += ["", f"**A ring that turns**, by a sector of it: {ring}"]
+    tables.write("periodic", lines)
 
 
 if __name__ == "__main__":

@@ -13,7 +13,8 @@ import pathlib
 import subprocess
 import tempfile
 
-from pages.origin import ROOT, written_by
+from pages import tables
+from pages.origin import written_by
 
 RANKS_OF_LARGER = 4
 STAGES = ["size field", "surface front", "volume front", "improve", "check"]
@@ -43,9 +44,12 @@ def row_of_run(told, ranks):
     rows = told.get("ranks", [])
     memory = [row["peak_memory_bytes"] for row in rows] or [told["peak_memory_bytes"]]
     taken = max((row["bytes_taken"] for row in rows), default=0)
-    return (f"| {ranks} | {told['tets']:,} | `{told['hash']}` | {min(memory) / 1e9:.2f} to {max(memory) / 1e9:.2f} | "
-            f"{max(memory) / told['tets']:.0f} | {taken / 1e6:.1f} | {taken / told['tets']:.1f} | "
-            f"{max((row['rounds_of_talk'] for row in rows), default=0):.0f} | {told['wall_seconds']:.1f} |")
+    return [ranks, f"{told['tets']:,}", told["hash"], f"{min(memory) / 1e9:.2f}", f"{max(memory) / 1e9:.2f}", f"{max(memory) / told['tets']:.0f}",
+            f"{taken / 1e6:.1f}", f"{taken / told['tets']:.1f}", f"{max((row['rounds_of_talk'] for row in rows), default=0):.0f}", f"{told['wall_seconds']:.1f}"]
+
+
+HEAD = ["ranks", "elements", "hash", "least peak memory of a rank, GB", "peak memory of a rank, GB", "B/element", "MB taken by a rank", "taken, B/element", "rounds of talk", "s"]
+STAGE_HEAD = ["ranks", "stage", "MB taken", "imbalance", "s shared", "s talk", "s"]
 
 
 def rows_of_stages(told, ranks):
@@ -53,8 +57,8 @@ def rows_of_stages(told, ranks):
         shared, talking = of_stage(told, name, "shared_seconds"), of_stage(told, name, "talking_seconds")
         mean = sum(shared) / len(shared)
         seconds = wall(told, name)
-        yield (f"| {ranks} | {name} | {max(of_stage(told, name, 'bytes_taken')) / 1e6:.2f} | "
-               f"{max(shared) / mean if mean else 1:.2f} | {mean:.2f} | {sum(talking) / len(talking):.2f} | {seconds:.2f} |")
+        yield [ranks, name, f"{max(of_stage(told, name, 'bytes_taken')) / 1e6:.2f}", f"{max(shared) / mean if mean else 1:.2f}", f"{mean:.2f}",
+               f"{sum(talking) / len(talking):.2f}", f"{seconds:.2f}"]
 
 
 def rows_of_memory(told):
@@ -63,7 +67,7 @@ def rows_of_memory(told):
         peaks = [max(s["counters"].get("peak memory bytes so far", 0) for s in told[ranks]["stages"] if s["name"].startswith(name))
                  for name in STAGES]
         if ranks > 1:
-            yield f"| {ranks} | {' | '.join(f'{p / 1e6:.0f}' for p in peaks)} |"
+            yield [ranks, *(f"{p / 1e6:.0f}" for p in peaks)]
 
 
 def seconds_alone(alone):
@@ -137,8 +141,7 @@ def rows_of_prediction(model):
         alike, shared = model.seconds(elements)
         cells = [f"{model.wall(elements, p):,.0f} s, {(alike + shared) / model.wall(elements, p):.1f} times; "
                  f"{float(f'{model.memory(elements, p) / 1e9:.2g}'):,g} GB" for p in (16, 64, 1024)]
-        yield (f"| {elements / 1e6:,.0f} M | {alike + shared:,.0f} | {alike:,.0f} | {elements * model.bytes / 1e9:,.1f} | "
-               f"{' | '.join(cells)} |")
+        yield [f"{elements / 1e6:,.0f} M", f"{alike + shared:,.0f}", f"{alike:,.0f}", f"{elements * model.bytes / 1e9:,.1f}", *cells]
 
 
 def prediction(told, larger, by):
@@ -154,8 +157,7 @@ def prediction(told, larger, by):
     return ["## What many ranks would gain", "",
             f"From the runs above, and {million:.1f} M elements by a process alone and by {by} ranks. CPU seconds of a process alone, at "
             f"{small['tets'] / 1e6:.1f} M and {million:.1f} M elements:", "",
-            "| stage | every rank does, s | ranks share, s |", "| --- | --: | --: |",
-            *(f"| {name} | {both(name, False)} | {both(name, True)} |" for name in STAGES), "",
+            *tables.table(["stage", "every rank does, s", "ranks share, s"], [[name, both(name, False), both(name, True)] for name in STAGES]), "",
             f"Memory is {memory_of(small):.0f} and {memory_of(large):.0f} bytes an element, with {by} ranks {memory_of(larger_ranks):.0f} on each: so "
             f"{model.held_by_all:.0f} of them are on every rank, and {model.held_in_shares:.0f} are shared. A rank of {by} takes "
             f"{bytes_taken(told[by]):.1f} and {bytes_taken(larger_ranks):.1f}, hashes are one: `{large['hash']}`.", "",
@@ -164,16 +166,21 @@ def prediction(told, larger, by):
             "assumed 1 GB/s; memory is what is on every rank at the larger size, and the share of the rest, bytes an element. Rounds of talk cost nothing beside that: there are "
             f"{max(row['rounds_of_talk'] for row in larger_ranks['ranks']):.0f}.", "",
             "Measured elsewhere, of another model and by one process: 100 M elements in 428 CPU seconds with writing the file, 62 bytes an element "
-            "([volume](volume-bench.md)).", "",
-            "| elements | one core, s | of that every rank does, s | GB taken by each | 16 ranks | 64 ranks | 1,024 ranks |",
-            "| --: | --: | --: | --: | --: | --: | --: |", *rows_of_prediction(model), "",
+            "([graded](graded.md)).", "",
+            *tables.table(["elements", "one core, s", "of that every rank does, s", "GB taken by each", "16 ranks", "64 ranks", "1,024 ranks"],
+                          rows_of_prediction(model)), "",
             "So what is on every rank decides, twice. In time: sizes, surface and the division into pieces are done by every rank, and vertices that moved come to "
             "every rank. In memory: all vertices, the surface and the octree of sizes have to fit on one machine. Numbers of elements "
             "end at 536,870,912 today: the lower two rows are what it would take.", ""]
 
 
-HEAD_OF_RUNS = ("| ranks | elements | hash | peak memory of a rank, GB | B/element | MB taken by a rank | B/element | rounds of talk | s |\n"
-                "| --: | --: | --- | --: | --: | --: | --: | --: | --: |")
+def shown(runs, stages):
+    """Rows of cells: of all runs; of each stage of those with the first number of elements."""
+    columns = [c for c in HEAD if c not in ("hash", "least peak memory of a rank, GB")]
+    return [*tables.some(HEAD, runs, columns), "", f"Hashes of those of one number of elements are one: {tables.put('ranks', HEAD, runs)}.", "",
+            "Of each stage, with 2 ranks and more: MB that a rank takes; the longest share over the mean one; the mean seconds in shared work and in talk, waiting "
+            "included; the whole.", "", *tables.spread_by("stage", STAGE_HEAD, stages, STAGE_HEAD[2:]), "",
+            f"Median, least and most. Each: {tables.put('ranks-stages', STAGE_HEAD, stages)}."]
 
 
 def page(told, larger, model, elements, args):
@@ -183,21 +190,16 @@ def page(told, larger, model, elements, args):
     lines = ["# Ranks: one mesh by several processes", "",
              f"{written_by(args)}: {model}, {elements:,.0f} elements asked for, one thread a process, all on one machine, so "
              "wall times say only who waits: cores are fewer, and others may work beside. How it is used: [ranks](../use/ranks.md).", "",
-             HEAD_OF_RUNS, *(row_of_run(told[n], n) for n in sorted(told)), "",
-             *(["The same of more elements:", "", HEAD_OF_RUNS, *(row_of_run(larger[n], n) for n in sorted(larger)), "",
-                "Peak memory of the first rank up to the end of each stage, MB:", "",
-                f"| ranks | {' | '.join(STAGES)} |", "| --: |" + " --: |" * len(STAGES), *rows_of_memory(larger), ""] if larger else []),
-             "Of each stage: bytes that a rank takes; the longest share over the mean one; the mean time in shared work and in talk, "
-             "waiting included; the whole.", "",
-             "| ranks | stage | MB taken | imbalance | s shared | s talk | s |", "| --: | --- | --: | --: | --: | --: | --: |",
-             *(row for n in sorted(told) if n > 1 for row in rows_of_stages(told[n], n)), "",
+             *shown([row_of_run(runs[n], n) for runs in (told, larger) for n in sorted(runs)],
+                    [row for n in sorted(told) if n > 1 for row in rows_of_stages(told[n], n)]), "",
+             *(["Peak memory of the first rank up to the end of each stage, of the larger number, MB:", "",
+                *tables.table(["ranks", *STAGES], rows_of_memory(larger)), ""] if larger else []),
              f"Of the {whole:.1f} CPU seconds of a process alone, lattice, front, pieces of improvement and check, which ranks share, take "
              f"{shared:.1f}: {100 * serial:.0f} % are done by every rank. Without any cost of talk, that bounds what ranks gain (Amdahl):", "",
-             "| ranks | times as fast, at most |", "| --: | --: |",
-             *(f"| {p:,} | {1 / (serial + (1 - serial) / p):.2f} |" for p in (2, 4, 16, 64, 1024)), ""]
+             *tables.table(["ranks", "times as fast, at most"], [[f"{p:,}", f"{1 / (serial + (1 - serial) / p):.2f}"] for p in (2, 4, 16, 64, 1024)]), ""]
     if larger:
         lines += prediction(told, larger, RANKS_OF_LARGER)
-    return "\n".join(lines)
+    return lines
 
 
 def main():
@@ -213,17 +215,15 @@ def main():
     with tempfile.TemporaryDirectory() as folder:
         for ranks in map(int, a.ranks.split(",")):
             told[ranks] = run(a.build / "cli/octafront", a.model, a.elements, ranks, pathlib.Path(folder))
-            print(row_of_run(told[ranks], ranks), flush=True)
+            print(tables.row(row_of_run(told[ranks], ranks)), flush=True)
         larger = {}
         for ranks in told if a.larger else []:
             larger[ranks] = run(a.build / "cli/octafront", a.model, a.larger, ranks, pathlib.Path(folder))
-            print(row_of_run(larger[ranks], ranks), flush=True)
+            print(tables.row(row_of_run(larger[ranks], ranks)), flush=True)
         assert len({t["hash"] for t in larger.values()}) < 2
     hashes = {t["hash"] for t in told.values()}
-    text = page(told, larger, pathlib.Path(a.model).name, a.elements, "bench/run.sh ranks")
-    print(text)
     if a.page:
-        (ROOT / "docs/measured/ranks.md").write_text(text)
+        tables.write("ranks", page(told, larger, pathlib.Path(a.model).name, a.elements, "bench/run.sh ranks"))
     assert len(hashes) == 1, hashes
 
 

@@ -70,7 +70,7 @@ def write_sector(path, twist=0.0, high=HIGH, around=120):
     path.write_text("".join("v %.17g %.17g %.17g\n" % p for p in points) + "".join("f %d %d %d\n" % f for f in faces))
 
 
-def pairs_in_words(file):
+def pairs_of(file):
     """Nodes on the straight side that is turned: how many have no partner, and how far off it is."""
     mesh = meshio.read(file)
     p = mesh.points[np.unique(np.concatenate([c.data for c in mesh.cells if c.type.startswith("tetra")]))]
@@ -80,7 +80,7 @@ def pairs_in_words(file):
     back = np.stack([high[:, 0] * math.cos(a) + high[:, 1] * math.sin(a), high[:, 1] * math.cos(a) - high[:, 0] * math.sin(a), high[:, 2]], axis=1)
     off = [np.abs(low - q).max(axis=1).min() for q in back]
     near = [d for d in off if d < 1e-6]
-    return f"{len(high)}, {len(off) - len(near)} without, off by {max(near, default=0):.1g}"
+    return len(high), len(off) - len(near), f"{max(near, default=0):.1g}"
 
 
 def stretched(r):
