@@ -12,6 +12,7 @@ import pathlib
 import subprocess
 import tempfile
 
+from pages import tables
 from pages.origin import ROOT, written_by
 
 # Case, body, edges of the mesh that comes, and what was asked: % of edges that fit, least and mean quality.
@@ -54,8 +55,8 @@ def rows_of_cases(build):
             r = json.loads(told)
             part = 100 * r["fitting"] / r["edges"]
             good = part >= fit and r["quality_min"] >= least and r["quality_mean"] >= mean and r["longest"] <= 2
-            yield (f"| {title} | {r['tets']:,} | {r['tets'] / r['complexity']:.1f} | {part:.1f} % | ≥ {fit} % | {r['longest']:.2f} | "
-                   f"{r['quality_min']:.3f}, {r['quality_mean']:.3f} | ≥ {least:.2f}, {mean:.2f} | {'all' if good else 'not all'} | {r['cpu']:.1f} |")
+            yield [title, f"{r['tets']:,}", f"{r['tets'] / r['complexity']:.1f}", f"{part:.1f} %", f"≥ {fit} %", f"{r['longest']:.2f}",
+                   f"{r['quality_min']:.3f}, {r['quality_mean']:.3f}", f"≥ {least:.2f}, {mean:.2f}", "all" if good else "not all", f"{r['cpu']:.1f}"]
 
 
 def rows_of_loop(build):
@@ -79,16 +80,13 @@ def slope(rows):
 def main():
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
     parser.add_argument("build", type=pathlib.Path)
-    parser.add_argument("--output", default=ROOT / "docs/measured/adapt.md", type=pathlib.Path)
     options = parser.parse_args()
     lines = ["# Adaptation to metrics", "", f"{written_by('bench/run.sh adapt')}.", "", "## The Working Group's cases", "",
              "The cases and measures of the Unstructured Grid Adaptation Working Group (github.com/UGAWG/adapt-benchmarks), by `adapt_to_metric()` on one thread from a uniform mesh of edges .5 (cube) and .1 (the cube without a cylinder of "
              "radius .5). *fit*: edges from √½ to √2 times as long as is wanted; *longest* in parts of that, at most 2 asked; quality in the metric. *asked*: better than all entries of 2017.", "",
-             "| case | elements | for each unit of complexity | fit | asked | longest | quality: least, mean | asked | met | CPU s |",
-             "| --- | --- | --- | --- | --- | --- | --- | --- | --- | --- |"]
-    for row in rows_of_cases(options.build):
-        print(row, flush=True)
-        lines.append(row)
+             *tables.table(["case", "elements", "for each unit of complexity", "fit", "asked", "longest", "quality: least, mean", "asked", "met", "CPU s"],
+                           rows_of_cases(options.build))]
+    print("\n".join(lines))
     loops, why = rows_of_loop(options.build)
     lines += ["", "## A loop with a solver", ""]
     if loops is None:
@@ -96,12 +94,11 @@ def main():
     else:
         lines += ["`examples/solve/fenicsx_loop.py`: Poisson's equation on an L-shaped solid with the solution r^⅔ sin ⅔θ cos πz, whose gradient is infinite at the edge, linear elements of FEniCSx; the metric of the solution in L² for twice as many elements in each "
                   "step; *sizes*: as long in all directions, with the same density. The error is that of the gradient in L².", "",
-                  "| mesh | elements | unknowns | error |", "| --- | --- | --- | --- |"]
-        for kind in ("uniform", "sizes", "metric"):
-            lines += [f"| {kind} | {r['elements']:,} | {r['unknowns']:,} | {r['error']:.4f} |" for r in loops[kind]]
+                  *tables.table(["mesh", "elements", "unknowns", "error"], [[kind, f"{r['elements']:,}", f"{r['unknowns']:,}", f"{r['error']:.4f}"]
+                                                                            for kind in ("uniform", "sizes", "metric") for r in loops[kind]])]
         lines += ["", f"Slopes of the lines that fit best: uniform {slope(loops['uniform']):.3f}, sizes {slope(loops['sizes']):.3f}, metric {slope(loops['metric']):.3f}. By theory they end at -²⁄₉, -⅓ and -⅓: the "
                   "uniform meshes have not yet come to where the edge alone counts; elements that are long along the edge have a slope between that of a plane (-½) and that of a body, probably because they may still grow longer. Round elements of the density that the metric has gain nothing over uniform ones here; the directions do."]
-    options.output.write_text("\n".join(lines) + "\n", encoding="utf-8")
+    tables.write("adapt", lines)
 
 
 if __name__ == "__main__":

@@ -10,6 +10,7 @@ import pathlib
 import subprocess
 import tempfile
 
+from pages import tables
 from pages.origin import written_by
 
 # name, surface, small and large size in parts of the diagonal of its box
@@ -33,9 +34,17 @@ def rows_of(build, surface, small, large, loops, is_given):
 
 
 def row(name, which, record, volume):
-    return (f"| {name} | {which} | {record['tets']:,} | {max(record['tets'], record['before']) / record['cpu'] / 1000:.0f} | "
-            f"{100 * record['fitting'] / record['edges']:.1f} % | {record['longest']:.2f} | {record['beta_mean']:.3f} | {record['beta_min']:.3f} | "
-            f"{record['poor']} | {100 * (record['volume'] / volume - 1):+.2f} % | {record['deviation'] / record['bound']:.2f} |")
+    return [name, which, f"{record['tets']:,}", f"{max(record['tets'], record['before']) / record['cpu'] / 1000:.0f}",
+            f"{100 * record['fitting'] / record['edges']:.1f} %", f"{record['longest']:.2f}", f"{record['beta_mean']:.3f}", f"{record['beta_min']:.3f}",
+            record["poor"], f"{100 * (record['volume'] / volume - 1):+.2f} %", f"{record['deviation'] / record['bound']:.2f}"]
+
+
+HEAD = ["model", "adaptation", "elements", "k/s", "fit", "longest", "mean β", "least β", "poor", "volume", "off"]
+
+
+def shown(rows):
+    """Rows of cells."""
+    return [*tables.spread_by("adaptation", HEAD, rows, HEAD[2:]), "", f"Median, least and most of the models. Each: {tables.put('adapt-isotropic', HEAD, rows)}."]
 
 
 def page(results, loops):
@@ -45,12 +54,9 @@ def page(results, loops):
              "before and after included; those that were made, or those that came if they were more. *fit*, *longest*: edges from √½ to √2 times as long as is wanted, and the longest, in parts of what is wanted. "
              "*poor*: elements with β < .3, forced or not. *volume* against that of the mesh that all began with. *on its surface*: with `--surface`, the surface "
              "that was meshed: volumes against that of the surface. *off*: the distance of walls and their ground, both ways, in parts of the bound (the larger of .4 % of the "
-             "diagonal and what the walls that came had).", "",
-             "| model | adaptation | elements | k/s | fit | longest | mean β | least β | poor | volume | off |", "| --- | --- | --- | --- | --- | --- | --- | --- | --- | --- | --- |"]
-    for name, volume, records in results:
-        lines += [row(name, "first, small", records[0], volume), row(name, "first, large", records[1], volume),
-                  row(name, "last, small", records[-2], volume), row(name, "last, large", records[-1], volume)]
-    return "\n".join(lines) + "\n"
+             "diagonal and what the walls that came had).", ""]
+    chosen = {"first, small": 0, "first, large": 1, "last, small": -2, "last, large": -1}
+    return lines + shown([row(name, which, records[at], volume) for name, volume, records in results for which, at in chosen.items()])
 
 
 def main():
@@ -59,7 +65,6 @@ def main():
     parser.add_argument("--loops", type=int, default=10)
     parser.add_argument("--only", default="")
     parser.add_argument("--no-surface", action="store_true", help="not on the surfaces that were meshed")
-    parser.add_argument("--output", default="docs/measured/adapt-isotropic.md", type=pathlib.Path)
     options = parser.parse_args()
     results = []
     for name, surface, small, large in MODELS:
@@ -70,8 +75,9 @@ def main():
             title = name + (", on its surface" if is_given else "")
             results.append((title, volume, records))
             for record in records:
-                print(row(title, f"{record['size']:.3g}", record, volume), flush=True)
-    options.output.write_text(page(results, options.loops))
+                print(tables.row(row(title, f"{record['size']:.3g}", record, volume)), flush=True)
+    if not options.only:
+        tables.write("adapt-isotropic", page(results, options.loops))
 
 
 if __name__ == "__main__":

@@ -11,6 +11,7 @@ import pathlib
 import statistics
 
 from pages.origin import written_by
+from pages.tables import put, worst, write
 from status import mesh_and_judge
 
 RUNS = {"automatic": [], "100 k": ["--elements", "100000"]}
@@ -52,13 +53,15 @@ def summary(name, made, failed):
         *(f"Failed: {model}: {why}" for model, why in failed), ""])
 
 
-def worst_table(made):
-    worst = sorted(made, key=lambda r: (-r["poor_free"], -r["low_free"] / r["tets"], r["beta"]))[:10]
-    rows = ["| model | elements | least β | least angle ° | below .2 or 10° | not forced | below .4, not forced | Hausdorff % | CPU s |",
-            "| --- | --- | --- | --- | --- | --- | --- | --- | --- |"]
-    rows += [f"| {r['model']} | {r['tets']:,} | {r['beta']:.3f} | {r['angle']:.1f} | {r['poor']:.0f} | {r['poor_free']:.0f} | "
-             f"{r['low_free']:.0f} | {r['hausdorff']:.3f} | {r['cpu']:.1f} |" for r in worst]
-    return "\n".join(rows) + "\n"
+HEAD = ["model", "elements", "least β", "least angle °", "below .2 or 10°", "of these not forced", "below .4, not forced", "Hausdorff %", "CPU s"]
+
+
+def tables_of(name, made):
+    """Each model, the worst first."""
+    made = sorted(made, key=lambda r: (-r["poor_free"], -r["low_free"] / r["tets"], r["beta"]))
+    rows = [[r["model"], f"{r['tets']:,}", f"{r['beta']:.3f}", f"{r['angle']:.1f}", f"{r['poor']:.0f}", f"{r['poor_free']:.0f}", f"{r['low_free']:.0f}",
+             f"{r['hausdorff']:.3f}", f"{r['cpu']:.1f}"] for r in made]
+    return ["The worst ten:", "", *worst(HEAD, rows, "of these not forced", HEAD, most=True), "", f"Each: {put('derived-' + name.replace(' ', '-'), HEAD, rows)}.", ""]
 
 
 def main():
@@ -84,10 +87,11 @@ def main():
             rows = list(pool.map(lambda m: mesh_and_judge(a.build, m, [*options, "--threads", "1"], a.timeout), models))
             made = [figures(m, r) for m, r in zip(models, rows) if r["status"] == 0]
             failed = [(m.name, r["message"][:200]) for m, r in zip(models, rows) if r["status"] != 0]
-            text += [f"## Sizes: {name}", "", summary(name, made, failed).replace("\n", "\n\n"), "The worst ten:", "", worst_table(made)]
+            text += [f"## Sizes: {name}", "", summary(name, made, failed).replace("\n", "\n\n"), *tables_of(name, made)]
             print(summary(name, made, failed), flush=True)
             if not a.only:
-                pathlib.Path("docs/measured/derived-status.md").write_text("\n".join(text))
+                write("derived-status", text)
 
 
-main()
+if __name__ == "__main__":
+    main()

@@ -8,6 +8,7 @@ import pathlib
 import statistics
 import tempfile
 
+from pages import tables
 from pages.origin import written_by
 from status import mesh_and_judge
 
@@ -36,8 +37,7 @@ CUBE = """OFF
 3 3 0 4
 3 3 4 7
 """
-HEAD = ["| gradation | mean β | above .8, % | least β | angles ° | elements | filled, k/CPU s | in all, k/CPU s | Hausdorff %, mean |",
-        "| --- | --- | --- | --- | --- | --- | --- | --- | --- |"]
+HEAD = ["what", "gradation", "mean β", "above .8, %", "least β", "angles °", "elements", "filled, k/CPU s", "in all, k/CPU s", "Hausdorff %, mean"]
 
 
 def figures(row):
@@ -49,14 +49,14 @@ def figures(row):
             "hausdorff": row["hausdorff_percent"]}
 
 
-def line(gradation, made):
+def line(what, gradation, made):
     mean = lambda key: statistics.mean(m[key] for m in made)
-    return (f"| {gradation:g} | {mean('mean'):.4f} | {mean('above'):.1f} | {min(m['least'] for m in made):.2f} | "
-            f"{min(m['low'] for m in made):.0f}–{max(m['high'] for m in made):.0f} | {mean('tets'):,.0f} | {mean('fill'):.0f} | "
-            f"{mean('all'):.0f} | {mean('hausdorff'):.3f} |")
+    return [what, f"{gradation:g}", f"{mean('mean'):.4f}", f"{mean('above'):.1f}", f"{min(m['least'] for m in made):.2f}",
+            f"{min(m['low'] for m in made):.0f}–{max(m['high'] for m in made):.0f}", f"{mean('tets'):,.0f}", f"{mean('fill'):.0f}", f"{mean('all'):.0f}",
+            f"{mean('hausdorff'):.3f}"]
 
 
-def table(build, models, options, timeout):
+def rows_of(build, what, models, options, timeout):
     rows = []
     for gradation in GRADATIONS:
         made = []
@@ -65,9 +65,19 @@ def table(build, models, options, timeout):
             if row["status"] != 0 or row["defect"]:
                 raise SystemExit(f"{model.name} at {gradation}: {row['message'] or row['defect']}")
             made.append(figures(row))
-        rows.append(line(gradation, made))
-        print(rows[-1], flush=True)
-    return "\n".join(HEAD + rows) + "\n"
+        rows.append(line(what, gradation, made))
+        print(tables.row(rows[-1]), flush=True)
+    return rows
+
+
+ABOUT = f"""Means over the models, worst of all. *A million elements*: {', '.join(MODELS)}, `--elements
+1000000`, so sizes from curvature, walls and features, all scaled until there are about a million. *Growing into the volume*: the same at automatic size,
+`--interior graded`. *Sizes 1000 : 1*: a cube with elements of a tenth of its side, and of a thousandth of that at a point inside."""
+
+
+def shown(rows):
+    columns = [c for c in HEAD if c not in ("above .8, %", "in all, k/CPU s")]
+    return [*tables.some(HEAD, rows, columns), "", f"With all figures: {tables.put('gradation', HEAD, rows)}."]
 
 
 def main():
@@ -82,19 +92,12 @@ def main():
         cube, point = pathlib.Path(folder, "cube.off"), pathlib.Path(folder, "point.csv")
         cube.write_text(CUBE)
         point.write_text("x,y,z,size\n0.37,0.41,0.45,0.0001\n")
-        parts = [
-            ("One number of elements", f"{', '.join(m.name for m in models)}: `--elements 1000000`, so sizes from curvature, "
-             "walls and features, all scaled until there are about a million.", models, ["--elements", "1000000"]),
-            ("Sizes that grow into the volume", "The same models at automatic size, `--interior graded`.", models,
-             ["--interior", "graded"]),
-            ("Sizes 1000 : 1", "A cube with elements of a tenth of its side, and of a thousandth of that at a point inside.", [cube],
-             ["--size", "0.1", "--regions", point]),
-        ]
-        text = ["# How fast sizes may change", "", f"{written_by('bench/run.sh gradation')}, one thread. Means over the models, worst "
-                "of all.", ""]
-        for title, what, which, options in parts[:a.parts]:
-            text += [f"## {title}", "", what, "", table(a.build, which, options, a.timeout)]
-    pathlib.Path("docs/measured/gradation.md").write_text("\n".join(text))
+        parts = [("a million elements", models, ["--elements", "1000000"]), ("growing into the volume", models, ["--interior", "graded"]),
+                 ("sizes 1000 : 1", [cube], ["--size", "0.1", "--regions", point])]
+        rows = [row for what, which, options in parts[:a.parts] for row in rows_of(a.build, what, which, options, a.timeout)]
+    if not a.only:
+        tables.write("gradation", ["# How fast sizes may change", "", f"{written_by('bench/run.sh gradation')}, one thread. {ABOUT}", "", *shown(rows)])
 
 
-main()
+if __name__ == "__main__":
+    main()

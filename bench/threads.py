@@ -12,6 +12,7 @@ import pathlib
 import subprocess
 import tempfile
 
+from pages import tables
 from pages.origin import ROOT, written_by
 
 STAGES = ["repair", "detail", "features", "size field", "surface front", "volume front", "improve", "check"]
@@ -36,27 +37,25 @@ def run(program, model, elements):
 def row(name, of_stage, whole):
     seconds = of_stage["seconds"]
     speedups = (f"{seconds / of_stage[f'seconds with {n} threads']:.2f}" for n in THREADS)
-    return (f"| {name} | {seconds:.2f} | {of_stage['serial seconds']:.3f} | {100 * of_stage['serial seconds'] / seconds:.1f} | "
-            f"{100 * of_stage['serial seconds'] / whole['seconds']:.1f} | {of_stage['regions']:,.0f} | {' | '.join(speedups)} | "
-            f"{of_stage[f'seconds with {THREADS[-1]} threads']:.3f} |")
+    return [name, f"{seconds:.2f}", f"{of_stage['serial seconds']:.3f}", f"{100 * of_stage['serial seconds'] / seconds:.1f}",
+            f"{100 * of_stage['serial seconds'] / whole['seconds']:.1f}", f"{of_stage['regions']:,.0f}", *speedups,
+            f"{of_stage[f'seconds with {THREADS[-1]} threads']:.3f}"]
+
+
+HEAD = ["stage", "CPU s", "serial s", "of the stage, %", "of the process, %", "regions", *(f"times as fast: {n} threads" for n in THREADS), f"s with {THREADS[-1]}"]
 
 
 def rows(told):
     whole = told["whole"]
-    yield (f"| stage | CPU s | serial s | of the stage, % | of the process, % | regions | times as fast: 2 | 16 | 64 threads | "
-           f"s with {THREADS[-1]} |")
-    yield "| --- |" + " --: |" * 9
-    for name, of_stage in told["stages"].items():
-        if of_stage["seconds"] > 0.001 * whole["seconds"]:
-            yield row(name, of_stage, whole)
-    yield row("**process**", whole, whole)
+    stages = [row(name, of_stage, whole) for name, of_stage in told["stages"].items() if of_stage["seconds"] > 0.001 * whole["seconds"]]
+    return tables.table(HEAD, [*stages, row("**process**", whole, whole)])
 
 
 def page(told, model, args):
     text = (ROOT / "bench/threads.md.in").read_text()
-    tables = [line for one in told for line in (f"{one['tets']:,} elements:", "", *rows(one), "")]
+    lines = [line for one in told for line in (f"{one['tets']:,} elements:", "", *rows(one), "")]
     said = f"{written_by(args)}: {model} from its file, `--elements`, on one thread."
-    return text.replace("@SAID@", said).replace("@TABLES@", "\n".join(tables).rstrip())
+    return text.replace("@SAID@", said).replace("@TABLES@", "\n".join(lines).rstrip())
 
 
 def main():
@@ -74,7 +73,7 @@ def main():
         told.append(min(runs, key=lambda r: r["whole"]["seconds"]))
         print("\n".join([f"{told[-1]['tets']:,} elements, hash {told[-1]['hash']}", *rows(told[-1]), ""]), flush=True)
     if a.page:
-        (ROOT / "docs/measured/threads.md").write_text(page(told, pathlib.Path(a.model).name, "bench/run.sh threads --page"))
+        tables.write("threads", [page(told, pathlib.Path(a.model).name, "bench/run.sh threads --page")])
 
 
 if __name__ == "__main__":

@@ -25,6 +25,7 @@ import tempfile
 
 ROOT = pathlib.Path(__file__).resolve().parents[1]
 sys.path.insert(0, str(ROOT / "bench"))
+from pages import tables
 from pages.origin import written_by
 
 try:
@@ -34,7 +35,6 @@ except ImportError:
     meshio = None
 
 OCTAFRONT = os.environ.get("OCTAFRONT", str(ROOT / "build/release/cli/octafront"))
-PAGE = ROOT / "docs/measured/contacts.md"
 CASES, SIZES = 200, (("coarse", 0.8), ("medium", 0.4), ("fine", 0.2))
 """Sizes in radii, or half edges."""
 LEAST_ANGLE, MOST_ELEMENTS, MOST_TIME, FIXED_SECONDS, LONGEST = 10, 1.5, 3, 0.3, 60
@@ -329,19 +329,18 @@ def judge(number, folder):
 
 
 def table(runs):
-    lines = ["| bodies | runs | good | least angle, worst | median | elements, times those of matched facets: median | most |"
-             " CPU s, times: median | most |", "| --- |" + " --: |" * 8]
+    lines = []
     for family in [*(f.__name__ for f in FAMILIES), None]:
         here = [r for r in runs if family in (r.family, None)]
         done = [r for r in here if r.elements > 0]
         beside = [r for r in done if not math.isnan(r.ratio)]
         if not beside:
             continue
-        lines.append("| {} | {} | {} | {:.1f} | {:.1f} | {:.2f} | {:.2f} | {:.2f} | {:.2f} |".format(
-            family or "all", len(here), sum(not r.faults for r in here), min(r.angle for r in done),
-            statistics.median(r.angle for r in done), statistics.median(r.ratio for r in beside), max(r.ratio for r in beside),
-            statistics.median(r.times for r in beside), max(r.times for r in beside)))
-    return lines
+        lines.append([family or "all", len(here), sum(not r.faults for r in here), f"{min(r.angle for r in done):.1f}",
+                      f"{statistics.median(r.angle for r in done):.1f}", f"{statistics.median(r.ratio for r in beside):.2f}",
+                      f"{max(r.ratio for r in beside):.2f}", f"{statistics.median(r.times for r in beside):.2f}", f"{max(r.times for r in beside):.2f}"])
+    return tables.table(["bodies", "runs", "good", "least angle, worst", "median", "elements, times those of matched facets: median", "most",
+                         "CPU s, times: median", "most"], lines)
 
 
 def page(runs, cases):
@@ -357,7 +356,7 @@ def page(runs, cases):
     bad = [r for r in runs if r.faults]
     if bad:
         words += ["What is not good:", "", *(f"- {r.family} {r.number}, {r.size}: {'; '.join(r.faults)}" for r in bad), ""]
-    PAGE.write_text("\n".join(words), encoding="utf-8")
+    tables.write("contacts", words)
 
 
 def main():

@@ -27,10 +27,10 @@ ROOT = pathlib.Path(__file__).resolve().parents[1]
 sys.path[:0] = [str(ROOT / "scripts/lib"), str(ROOT / "bench")]
 import nasty_solids as solids
 import thin_solids
+from pages import tables
 from pages.origin import written_by
 
 OCTAFRONT = os.environ.get("OCTAFRONT", str(ROOT / "build/release/cli/octafront"))
-PAGE = ROOT / "docs/measured/nasty-solids.md"
 SIZES = ("automatic", "coarse", "fine")
 COARSE = 1 / 8
 """The coarse size, in diagonals."""
@@ -120,28 +120,35 @@ def judge(number, family, solid, name, folder, plain):
                quality.get("dihedral_min_degrees", math.nan), quality.get("dihedral_max_degrees", math.nan), faults, said)
 
 
+HEAD = ["family", "runs", "good", "refused", "no end", "CPU s, median", "CPU s, worst", "elements, median", "elements, most", "volume off by, worst",
+        "worst where nothing is said"]
+
+
 def table(runs):
-    lines = ["| family | runs | good | refused | no end | CPU s, median | worst | elements, median | most | volume off by, worst |"
-             " worst where nothing is said |", "| --- | " + "--: | " * 10]
-    lines[1] = lines[1].rstrip()
+    lines = []
     for family in [*solids.FAMILIES, None]:
         here = [r for r in runs if family in (r.family, None)]
         done = [r for r in here if r.status == 0]
         if not done:
             continue
         unsaid = [abs(r.volume) for r in done if not r.said]
-        lines.append("| {} | {} | {} | {} | {} | {:.2f} | {:.1f} | {:,.0f} | {:,} | {:.2f} % | {:.2f} % |".format(
-            (family or "all").replace("_", " "), len(here), sum(not r.faults for r in here),
-            sum(r.status not in (0, -24, -9) for r in here), sum(r.status in (-24, -9) for r in here),
-            statistics.median(r.cpu for r in here), max(r.cpu for r in here), statistics.median(r.elements for r in done),
-            max(r.elements for r in done), 100 * max(abs(r.volume) for r in done), 100 * max(unsaid, default=0)))
+        lines.append([(family or "all").replace("_", " "), len(here), sum(not r.faults for r in here), sum(r.status not in (0, -24, -9) for r in here),
+                      sum(r.status in (-24, -9) for r in here), f"{statistics.median(r.cpu for r in here):.2f}", f"{max(r.cpu for r in here):.1f}",
+                      f"{statistics.median(r.elements for r in done):,.0f}", f"{max(r.elements for r in done):,}",
+                      f"{100 * max(abs(r.volume) for r in done):.2f} %", f"{100 * max(unsaid, default=0):.2f} %"])
     return lines
+
+
+def shown(rows):
+    """Rows of cells: the families that take longest, and the sum."""
+    return ["The ten families that take longest, and all:", "", *tables.worst(HEAD, rows[:-1], "CPU s, worst", HEAD, most=True), tables.row(rows[-1]), "",
+            f"Each family: {tables.put('nasty-solids', HEAD, rows)}."]
 
 
 def page(runs, arguments, plain):
     command = f"scripts/nasty_solids.py {arguments.cases} --page"
     faulty = [r for r in runs if r.faults]
-    PAGE.write_text("\n".join([
+    tables.write("nasty-solids", [
         "# Nasty solids", "",
         f"{written_by(command)}: cases {arguments.cases}, seed {arguments.seed}, {len(runs)} runs.", "",
         "Generated closed solids that are legal and awkward: `scripts/lib/nasty_solids.py` says which. Each is meshed with automatic sizes, with"
@@ -150,10 +157,10 @@ def page(runs, arguments, plain):
         f" ({1e6 * plain:.1f} us each), with at most {ABOVE_BUDGET} times the budget that automatic sizes promise (or, where a size is given, {MANY} times what it asks for,"
         f" {FORCED} for each triangle of the input and {FEW:,}), and within {100 * LOST:.0f} % of the exact volume. Where a given size cannot"
         " keep the volume a note has to say so.", "",
-        *table(runs), "",
+        *shown(table(runs)), "",
         f"What was not good ({len(faulty)} of {len(runs)}):", "",
-        *(f"- {r.number} {r.family}, {r.size}: {'; '.join(r.faults)}" for r in faulty[:60]),
-        *([f"- and {len(faulty) - 60} more"] if len(faulty) > 60 else []), ""]))
+        *(f"- {r.number} {r.family}, {r.size}: {'; '.join(r.faults)}" for r in faulty[:20]),
+        *([f"- and {len(faulty) - 20} more"] if len(faulty) > 20 else [])])
 
 
 def main():

@@ -26,10 +26,10 @@ import numpy
 
 ROOT = pathlib.Path(__file__).resolve().parents[1]
 sys.path[:0] = [str(ROOT / "bench")]
+from pages import tables
 from pages.origin import written_by
 
 OCTAFRONT = os.environ.get("OCTAFRONT", str(ROOT / "build/release/cli/octafront"))
-PAGE = ROOT / "docs/measured/peer-files.md"
 ENDINGS = {".mesh", ".meshb", ".msh", ".vtu", ".vtk", ".inp", ".bdf", ".nas", ".unv", ".med", ".mmed", ".xdmf", ".vol", ".ele", ".dat"}
 SECONDS = 60
 """For each reader and file."""
@@ -277,7 +277,7 @@ def page(rows, command):
     judged = sum(any(isinstance(found, dict) for found in row["judges"].values()) for row in rows)
     out.append(f"{len(rows)} files of {len({row['file'].parts[0] for row in rows})} projects, {judged} of which another reader reads as solids: "
                f"{good} are read as there.")
-    out += ["", "| project | file | ours | volume | groups | theirs | volume | names | verdict |", "|---|---|---|---|---|---|---|---|---|"]
+    files = []
     for row in rows:
         mine = row["ours"]
         judge = next(((name, found) for name, found in row["judges"].items() if isinstance(found, dict)), None)
@@ -286,9 +286,21 @@ def page(rows, command):
         cells += ["refused", "-", "-"] if "error" in mine else [solids_of(mine), f"{mine['volume']:.6g}", str(len(mine["names"]))]
         cells += [f"{judge[0]}: {solids_of(judge[1])}", f"{judge[1]['volume']:.6g}", str(len(judge[1]["names"]))] if judge else ["-", "-", "-"]
         said = "; ".join(row["bad"]) or (mine["error"][0] if "error" in mine else "good")
-        cells.append(said.replace("|", "\\|")[:160])
-        out.append("| " + " | ".join(cells) + " |")
-    PAGE.write_text("\n".join(out) + "\n", encoding="utf-8")
+        files.append([*cells, said[:160]])
+    tables.write("peer-files", [*out, "", *shown(files)])
+
+
+HEAD = ["project", "file", "ours", "volume", "groups", "theirs", "their volume", "names", "verdict"]
+
+
+def shown(files):
+    """Rows of cells: the projects, and what is not good."""
+    projects = [[project, len(its), sum(f[-1] == "good" for f in its), ", ".join(sorted({pathlib.Path(f[1]).suffix for f in its}))]
+                for project in dict.fromkeys(f[0] for f in files) for its in [[f for f in files if f[0] == project]]]
+    bad = [[f[0], f[1], f[2], f[5], f[-1]] for f in files if f[-1] != "good"]
+    return [*tables.table(["project", "files", "good", "kinds"], projects), "",
+            *(["Not good:", "", *tables.table(["project", "file", "ours", "theirs", "verdict"], bad[:20]), ""] if bad else []),
+            f"Each: {tables.put('peer-files', HEAD, files)}."]
 
 
 def main():

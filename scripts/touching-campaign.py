@@ -25,10 +25,10 @@ import numpy
 
 ROOT = pathlib.Path(__file__).resolve().parents[1]
 sys.path.insert(0, str(ROOT / "bench"))
+from pages import tables
 from pages.origin import written_by
 
 OCTAFRONT = os.environ.get("OCTAFRONT", str(ROOT / "build/release/cli/octafront"))
-PAGE = ROOT / "docs/measured/touching.md"
 N = 6
 DENSITIES = (.15, .3, .5, .6, .7, .8, .9, .95)
 SCALES = (1, 1e-3, 1e6, .37)
@@ -196,17 +196,16 @@ def page(runs, arguments):
              f"{sum(1 for s in {r.seed for r in runs} if cavities(pattern(s)))} of them with cavities.", "",
              "Walls touch walls in edges and vertices of all kinds; triangles face outward, inward, or any way; patterns are turned and "
              "scaled by 1e-3 to 1e6. Each is meshed by default and in one other way, counted by `check`, and drawn apart by `repair`. "
-             "Volumes are those of the written elements, as meshio reads them.", "",
-             "| way | runs | good | volume off by, worst | least angle | elements | CPU s, all |", "| --- | --: | --: | --: | --: | --: | --: |"]
+             "Volumes are those of the written elements, as meshio reads them.", ""]
+    rows = []
     for way in [*WAYS, "check", "repair"]:
         here = [r for r in runs if r.way == way]
         if not here:
             continue
         angles = [r.least for r in here if r.least == r.least]
-        lines.append("| {} | {} | {} | {:.1e} | {} | {:,} | {:.1f} |".format(
-            way, len(here), sum(not r.fault for r in here), max(r.off for r in here if r.off == r.off),
-            f"{min(angles):.1f}°" if angles else "", sum(r.elements for r in here), sum(r.seconds for r in here)))
-    PAGE.write_text("\n".join(lines) + "\n", encoding="utf-8")
+        rows.append([way, len(here), sum(not r.fault for r in here), f"{max(r.off for r in here if r.off == r.off):.1e}",
+                     f"{min(angles):.1f}°" if angles else "", f"{sum(r.elements for r in here):,}", f"{sum(r.seconds for r in here):.1f}"])
+    tables.write("touching", [*lines, *tables.table(["way", "runs", "good", "volume off by, worst", "least angle", "elements", "CPU s, all"], rows)])
 
 
 def main():

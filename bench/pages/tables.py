@@ -24,6 +24,18 @@ def table(head, rows):
     return [row(head), "|" + " --- |" * len(head), *map(row, rows)]
 
 
+def parsed(text):
+    """(head, rows) of each Markdown table that a program printed."""
+    found, lines = [], text.splitlines()
+    for before, line in zip(["", *lines], lines):
+        cells = [cell.strip().replace("\\|", "|") for cell in re.split(r"(?<!\\)\|", line)[1:-1]]
+        if cells and not before.startswith("|"):
+            found.append((cells, []))
+        elif cells and not set(line) <= set("|-: "):
+            found[-1][1].append(cells)
+    return found
+
+
 def some(head, rows, columns):
     """A table of the given columns."""
     return table(columns, [[cells[head.index(c)] for c in columns] for cells in rows])
