@@ -5,7 +5,7 @@ Usage: bench/run.sh complexes [--models NAME...] [--elements N] [--timeout SECON
 The complexes of scripts/make-complexes.sh. Anew: each mesher divides or triangulates the walls itself, to one size. Kept: the
 walls that Octafront triangulated to that size are the same for all. Every mesh is written as MEDIT and read back: octafront_evaluate
 judges elements, and volumes of the regions, one by one in the order of size, are compared with those of the walls given. Times are
-CPU seconds of the whole process, reading and writing included. Prints the tables of docs/measured/complexes.md; writes BUILD/complexes.json.
+CPU seconds of the whole process, reading and writing included. Writes the tables of docs/measured/complexes.md, and BUILD/complexes.json.
 --regions compares with nobody else: each complex is meshed to a size, and then each of its regions by itself, a surface of its own
 without neighbours. Times are of the stages, without reading and writing.
 """
@@ -19,6 +19,7 @@ import tempfile
 
 BENCH = pathlib.Path(__file__).resolve().parent
 sys.path.insert(0, str(BENCH))
+from pages import tables  # noqa: E402
 from pages.origin import written_by  # noqa: E402
 from peers import complexes, tetgen  # noqa: E402
 from peers.process import finish, run_measured  # noqa: E402
@@ -90,26 +91,28 @@ def compare(build, folder, names, elements, timeout, save):
                 row["right"] = right(row, tolerance)
                 rows.append(row)
                 save(rows)
-                print(line(row), flush=True)
+                print(tables.row(line(row)), flush=True)
     return rows
 
 
 def line(row):
     cells = [row["model"], row["surface"], row["mesher"]]
     if "tets" not in row:
-        return "| " + " | ".join([*cells, f"**no mesh**: {row['error']}".replace("|", "/"), *[""] * 6]) + " |"
+        return [*cells, f"**no mesh**: {row['error']}", *[""] * 6]
     n, error = row["tets"], row["volume_error"]
     regions = f"{row['regions']} of {row['expected_regions']}"
     volumes = "" if error is None else f"{error:.0e}"
     said = regions + (", " + volumes if volumes else "")
     if row["defect"]:
-        said += ", **not valid**: " + row["defect"][:60].replace("|", "/")
-    return "| " + " | ".join([*cells, said if row["right"] else f"**{said}**" if not row["defect"] else said, f"{n:,}",
-                              f"{row['cpu_seconds']:.2f}", f"{n / row['cpu_seconds'] / 1e3:,.0f} k", f"{row['beta_mean']:.3f}",
-                              f"{100 * (row['beta_classes'][0] + row['beta_classes'][1]) / n:.2f}",
-                              f"{row['dihedral_min']:.1f} - {row['dihedral_max']:.1f}"]) + " |"
+        said += ", **not valid**: " + row["defect"][:60]
+    return [*cells, said if row["right"] else f"**{said}**" if not row["defect"] else said, f"{n:,}",
+            f"{row['cpu_seconds']:.2f}", f"{n / row['cpu_seconds'] / 1e3:,.0f} k", f"{row['beta_mean']:.3f}",
+            f"{100 * (row['beta_classes'][0] + row['beta_classes'][1]) / n:.2f}",
+            f"{row['dihedral_min']:.1f} - {row['dihedral_max']:.1f}"]
 
 
+PAGE = tables.MEASURED / "complexes.md"
+REGIONS_HEAD = ["complex", "regions", "size", "elements", "us each", "mean β", "least angle", "alone: elements", "us each", "mean β", "least angle", "time, ratio"]
 HEAD = ["complex", "walls", "mesher", "regions, worst volume", "elements", "CPU s", "elements/s", "mean β", "% β < .4",
         "dihedral angles"]
 
@@ -132,9 +135,8 @@ def summary(rows):
                           f"{sum(a['dihedral_min'] >= b['dihedral_min'] for a, b in both)} of {len(both)}"]
             else:
                 cells += ["", "", ""]
-            lines.append("| " + " | ".join(cells) + " |")
-    return ["| walls | mesher | right | our elements per second over its | mean β, ours / its | our least angle no smaller |",
-            "|" + " --- |" * 6, *lines]
+            lines.append(cells)
+    return tables.table(["faces", "mesher", "right", "our elements per second over its", "mean β, ours / its", "our least angle no smaller"], lines)
 
 
 def report_of(build, surface, folder, size, timeout, options=()):
@@ -165,7 +167,7 @@ def by_regions(build, folder, name, size, timeout):
         each.append(seconds / tets)
         row += [f"{tets:,}", f"{1e6 * seconds / tets:.2f}", f"{beta:.3f}",
                 f"{min(r['quality']['dihedral_min_degrees'] for r in reports):.1f}"]
-    return "| " + " | ".join([*row, f"{each[0] / each[1]:.2f}"]) + " |"
+    return [*row, f"{each[0] / each[1]:.2f}"]
 
 
 def main():
@@ -182,16 +184,13 @@ def main():
     with tempfile.TemporaryDirectory() as folder:
         folder = pathlib.Path(folder)
         subprocess.run([build / "tests/support/make_complexes", folder], check=True, stdout=subprocess.DEVNULL)
-        print(f"{written_by('bench/run.sh complexes' + (' --regions ...' if args.regions else ''))}.\n")
         if args.regions:
-            print("| complex | regions | size | elements | us each | mean β | least angle | alone: elements | us each | mean β | least angle | time, ratio |")
-            print("|" + " --- |" * 12, flush=True)
-            for name, size in (spec.split(":") for spec in args.regions):
-                print(by_regions(build, folder, name, size, args.timeout), flush=True)
+            alone = [by_regions(build, folder, name, size, args.timeout) for name, size in (spec.split(":") for spec in args.regions)]
+            tables.rewrite(PAGE, "regions", [f"{written_by('bench/run.sh complexes --regions ...')}.", "", *tables.table(REGIONS_HEAD, alone)])
             return
-        print("| " + " | ".join(HEAD) + " |\n|" + " --- |" * len(HEAD), flush=True)
         rows = compare(build, folder, args.models, args.elements, args.timeout, save)
-    print("\n" + "\n".join(summary(rows)))
+    each = tables.put("complexes", HEAD, [line(row) for row in rows])
+    tables.rewrite(PAGE, "beside", [f"{written_by('bench/run.sh complexes')}. Each run: {each}.", "", *summary(rows)])
 
 
 if __name__ == "__main__":

@@ -11,6 +11,7 @@ import subprocess
 import sys
 import tempfile
 
+from pages import tables
 from pages.origin import written_by
 
 ROOT = pathlib.Path(__file__).resolve().parent.parent
@@ -52,7 +53,7 @@ def off_by(said, made):
 
 def main():
     octafront = pathlib.Path(sys.argv[1]) / "cli/octafront"
-    lines = ["| model | options | elements | off by | seconds | off by | memory | off by |", "| --- | --- | --- | --- | --- | --- | --- | --- |"]
+    rows = []
     with tempfile.TemporaryDirectory() as scratch:
         for model, options in CASES:
             if not (ROOT / model).exists():
@@ -68,14 +69,14 @@ def main():
                       f"boundary {made['boundary_faces']}", flush=True)
                 continue
             guess = said["dry_run"]
-            lines.append(f"| {pathlib.Path(model).stem} | {' '.join(options) or '-'} | {made['tets']:,} | {off_by(guess['expected_tets'], made['tets'])} | "
-                         f"{made['cpu_seconds']:.1f} | {off_by(guess['seconds'], made['cpu_seconds'])} | "
-                         f"{made['peak_memory_bytes'] / 1e6:.0f} MB | {off_by(guess['memory_bytes'], made['peak_memory_bytes'])} |")
-            print(lines[-1], flush=True)
+            rows.append([pathlib.Path(model).stem, " ".join(options) or "-", f"{made['tets']:,}", off_by(guess["expected_tets"], made["tets"]),
+                         f"{made['cpu_seconds']:.1f}", off_by(guess["seconds"], made["cpu_seconds"]), f"{made['peak_memory_bytes'] / 1e6:.0f} MB",
+                         off_by(guess["memory_bytes"], made["peak_memory_bytes"])])
+            print(tables.row(rows[-1]), flush=True)
     if "--fit" not in sys.argv:
-        page = ROOT / "docs/use/command-line.md"
-        before, rest = page.read_text().split("<!-- dry run -->")
-        page.write_text(before + "<!-- dry run -->\n" + f"{written_by('bench/run.sh dry_run')}.\n\n" + "\n".join(lines) + "\n<!-- end -->" + rest.split("<!-- end -->")[1])
+        tables.rewrite(ROOT / "docs/use/command-line.md", "dry run", [
+            f"{written_by('bench/run.sh dry_run')}.", "",
+            *tables.table(["model", "options", "elements", "off by", "seconds", "off by", "memory", "off by"], rows)])
 
 
 if __name__ == "__main__":

@@ -4,21 +4,20 @@ Usage: bench/run.sh second_order [--shapes]
 Writes its tables into docs/measured/second-order.md, each model into rows/second-order.csv. --shapes leaves out the models.
 """
 import argparse
-import csv
 import json
 import math
 import pathlib
 import statistics
 import subprocess
 
+from pages import tables
 from pages.origin import written_by
 
-PAGE = pathlib.Path("docs/measured/second-order.md")
-ROWS = PAGE.parent / "rows/second-order.csv"
-
-
-def head(titles):
-    return ["| " + " | ".join(titles) + " |", "|" + " --- |" * len(titles)]
+PAGE = tables.MEASURED / "second-order.md"
+SHAPES = ["surface and its triangles", "size", "elements", "straight: mean", "falls", "curved: mean", "falls", "order, straight and curved",
+          "straight: largest", "falls", "curved: largest", "falls", "least scaled Jacobian", "proven"]
+MODELS = ["model", "elements", "edges curved", "eased", "corners moved", "held back", "least scaled Jacobian", "proven", "crossings", "CPU s, first order",
+          "second order costs"]
 
 
 def run(build, *arguments):
@@ -32,10 +31,7 @@ def fall(before, now):
 
 def shapes(build):
     rows = run(build, "shapes")
-    lines = head(["surface and its triangles", "size", "elements", "straight: mean", "falls", "curved: mean", "falls",
-                  "order, straight and curved", "straight: largest", "falls", "curved: largest", "falls",
-                  "least scaled Jacobian", "proven"])
-    before = {}
+    made, before = [], {}
     for r in rows:
         if before.get("shape") != r["shape"]:
             before = {}
@@ -51,10 +47,10 @@ def shapes(build):
         for key in ("linear_most", "curved_most"):
             cells += [f"{r[key]:.1e}", fall(before.get(key), r[key])]
         cells += [f"{r['least_scaled_jacobian']:.2f}", proven(r)]
-        lines.append("| " + " | ".join(map(str, cells)) + " |")
-        print(lines[-1], flush=True)
+        made.append(cells)
+        print(tables.row(cells), flush=True)
         before = r
-    return lines
+    return tables.table(SHAPES, made)
 
 
 def proven(r):
@@ -62,33 +58,22 @@ def proven(r):
 
 
 def models(build):
-    rows = [["model", "elements", "edges curved", "eased", "corners moved", "held back", "least scaled Jacobian",
-             "proven", "crossings", "CPU s, first order", "second order costs"]]
-    results, costs = [], []
+    rows, results, costs = [], [], []
     for file in sorted(pathlib.Path("models/clean").iterdir()):
         r = run(build, file)[0]
         if "error" in r:
-            rows.append([file.name, r["error"].splitlines()[0]])
+            rows.append([file.name, r["error"].splitlines()[0], *[""] * (len(MODELS) - 2)])
             continue
         results.append(r)
         costs.append(100 * (r["cpu_seconds"] / r["linear_cpu_seconds"] - 1))
         rows.append([file.name, r["tets"], r["curved"], r["eased"], r["moved"], r["held"], f"{r['least_scaled_jacobian']:.3f}",
                      proven(r), r["crossings"], f"{r['linear_cpu_seconds']:.2f}", f"{costs[-1]:+.0f} %"])
         print(*rows[-1], flush=True)
-    with ROWS.open("w", newline="") as file:
-        csv.writer(file, lineterminator="\n").writerows(rows)
     good = sum(r["valid"] and r["not_proven"] == 0 for r in results)
     curved, eased = (sum(r[key] for r in results) for key in ("curved", "eased"))
     return [f"{good} of {len(results)} meshes have every element proven, {sum(r['tets'] for r in results):,} elements in all. Of the edges that "
             f"want to bend, {curved:,} do and {eased:,} ({100 * eased / (curved + eased):.2f} %) had to be eased. Second order costs "
-            f"{statistics.median(costs):.0f} % of a linear run in the median, {max(costs):.0f} % at most. Each: [{ROWS.name}](rows/{ROWS.name})."]
-
-
-def replace(mark, lines):
-    begin, end = f"<!-- {mark}: begin -->", f"<!-- {mark}: end -->"
-    text = PAGE.read_text()
-    before, rest = text.split(begin)
-    PAGE.write_text(before + begin + "\n" + "\n".join(lines) + "\n" + end + rest.split(end)[1])
+            f"{statistics.median(costs):.0f} % of a linear run in the median, {max(costs):.0f} % at most. Each: {tables.put('second-order', MODELS, rows)}."]
 
 
 def main():
@@ -97,9 +82,10 @@ def main():
     parser.add_argument("--shapes", action="store_true")
     args = parser.parse_args()
     said = [f"{written_by('bench/run.sh second_order')}.", ""]
-    replace("shapes", said + shapes(args.build))
+    tables.rewrite(PAGE, "shapes", said + shapes(args.build))
     if not args.shapes:
-        replace("models", said + models(args.build))
+        tables.rewrite(PAGE, "models", said + models(args.build))
 
 
-main()
+if __name__ == "__main__":
+    main()
