@@ -9,7 +9,7 @@ so no figure is rounded twice; a CSV file has plain numbers where a cell is noth
 import csv
 import re
 
-from pages.origin import ROOT
+from bench.pages.origin import ROOT
 
 MEASURED = ROOT / "docs/measured"
 SAID = "## What it says"  # written by hand: stays, with all that follows, when a command writes the page anew
