@@ -33,6 +33,8 @@ class Outcome:
     stage_wall_seconds: float | None = None
     peak_bytes: int = 0
     log: str = ""
+    status: int | None = None     # how it ended; None: stopped
+    report: dict | None = None    # what a run of ours says of itself (ours.py)
 
 
 def waited(command, seconds, folder=None, output=subprocess.STDOUT):
@@ -69,6 +71,7 @@ def run_measured(command, folder, timeout):
     """Runs `command` in `folder`. The Outcome has no mesh yet; `error` is set on failure or past `timeout` seconds."""
     outcome = Outcome(command=" ".join(map(str, command)))
     status, late, usage, outcome.wall_seconds, outcome.log = waited(command, timeout, folder)
+    outcome.status = None if late else status
     outcome.cpu_seconds = usage.ru_utime + usage.ru_stime
     outcome.peak_bytes = usage.ru_maxrss * 1024
     if late:

@@ -10,15 +10,14 @@ import argparse
 import collections
 import json
 import pathlib
-import resource
 import shutil
 import statistics
-import subprocess
 import tempfile
 
+from bench.ours import counter
 from bench.pages.origin import written_by
 from bench.pages.tables import put, spread, worst, write
-from bench.process import run_measured
+from bench.process import run_bounded, run_measured
 
 CAD = (".step", ".stp", ".brep", ".iges", ".igs")
 OVER = 1.3  # met within 30 %
@@ -28,13 +27,10 @@ def mesh(program, model, seconds):
     """The report, or the exit status as a word."""
     with tempfile.TemporaryDirectory() as folder:
         report = pathlib.Path(folder, "report.json")
-        done = subprocess.run(
-            [program, "mesh", model, "-o", pathlib.Path(folder, "mesh.msh"), "--json", report, "-q", "--threads", "1"],
-            capture_output=True, text=True,
-            preexec_fn=lambda: resource.setrlimit(resource.RLIMIT_CPU, (seconds, seconds)))
-        if done.returncode < 0:
+        status, _, _, _ = run_bounded([program, "mesh", model, "-o", pathlib.Path(folder, "mesh.msh"), "--json", report, "-q", "--threads", "1"], seconds)
+        if status is None:
             return f"no end in {seconds} CPU s"
-        return json.loads(report.read_text()) if done.returncode == 0 else f"exit {done.returncode}"
+        return json.loads(report.read_text()) if status == 0 else f"exit {status}"
 
 
 def gmsh(model, seconds):
@@ -47,10 +43,6 @@ def gmsh(model, seconds):
         lines = out.read_text().split("\n") if not run.error and out.exists() else []
         at = next((i for i, line in enumerate(lines) if line.strip() == "Tetrahedra"), None)
         return None if at is None else (int(lines[at + 1]), run.cpu_seconds)
-
-
-def counter(report, stage, key):
-    return next((s["counters"][key] for s in report["stages"] if s["name"] == stage and key in s["counters"]), 0)
 
 
 def figures(model, report):

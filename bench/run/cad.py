@@ -16,6 +16,7 @@ import subprocess
 import tempfile
 
 from bench.judges import cad_names
+from bench.ours import evaluated
 from bench.pages import cad_page, tables
 from bench.pages.origin import ORIGIN
 from bench.peers import netgen
@@ -92,7 +93,7 @@ def ours(build, file, info, part, timeout, nodes):
     program = (build / "cli/octafront").resolve()
     with tempfile.TemporaryDirectory() as folder:
         run = run_measured([program, "mesh", file.resolve(), "-o", "out.vtu", "--json", "report.json", "--size", repr(info["diagonal"] / part),
-                            "--order", 1 if part == 40 else 2, "--threads", "1"], folder, timeout)
+                            "--order", 1 if part == 40 else 2, "--threads", "1"], folder, timeout)  # not quiet: its notes are read
         run = finish(run, pathlib.Path(folder, "out.vtu"))
         if run.error:
             return {"error": run.error, "cpu": run.cpu_seconds}
@@ -108,12 +109,9 @@ def ours(build, file, info, part, timeout, nodes):
 def judged(build, run, info):
     if run.error:
         return {"error": run.error, "cpu": run.cpu_seconds}
-    done = subprocess.run([build / "bench/octafront_evaluate", run.mesh], capture_output=True, text=True, check=False)
-    if done.returncode != 0:
-        return {"error": "not a valid mesh: " + (done.stderr.strip().splitlines() or [""])[-1][:80], "cpu": run.cpu_seconds}
-    found = json.loads(done.stdout)
-    if found["defect"]:
-        return {"error": "not a valid mesh: " + found["defect"][:80], "cpu": run.cpu_seconds}
+    found, why = evaluated(build, run.mesh)
+    if why or found["defect"]:
+        return {"error": "not a valid mesh: " + (why or found["defect"])[:80], "cpu": run.cpu_seconds}
     return {"cpu": run.cpu_seconds, "tets": found["tets"], "off": worst([(found["volume"], sum(s["volume"] for s in info["solids"]))]),
             "beta": found["beta_mean"], "least": found["beta_min"], "angle": found["dihedral_min"]}
 

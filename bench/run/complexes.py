@@ -16,6 +16,7 @@ import pathlib
 import subprocess
 import tempfile
 
+from bench.ours import evaluated, mesh
 from bench.pages import tables
 from bench.pages.origin import written_by
 from bench.peers import complexes, tetgen
@@ -32,9 +33,7 @@ EXACT = 1e-9  # of the volume of each region by itself
 
 def ours(build, complex_file, folder, timeout, size, keep):
     options = ["--keep-surface"] if keep else []
-    outcome = run_measured([build / "cli/octafront", "mesh", complex_file, "-o", "out.mesh", "--threads", "1", "-q", "--size",
-                            f"{size:.9g}", *options], folder, timeout)
-    return finish(outcome, pathlib.Path(folder, "out.mesh"))
+    return mesh(build / "cli/octafront", complex_file, folder, timeout, "--size", f"{size:.9g}", *options, out="out.mesh")
 
 
 def gmsh(complex_file, folder, timeout, size, keep):
@@ -62,11 +61,11 @@ def judged(build, run, complex_file, size, keep, expected, timeout):
         row = {"error": outcome.error, "cpu_seconds": outcome.cpu_seconds, "peak_mb": outcome.peak_bytes / 1e6}
         if outcome.mesh is None:
             return row
-        done = subprocess.run([build / "bench/octafront_evaluate", outcome.mesh], capture_output=True, text=True)
-        if done.returncode != 0:
-            return row | {"error": f"its mesh cannot be read: {done.stderr.strip()[:120]}"}
+        quality, why = evaluated(build, outcome.mesh)
+        if why:
+            return row | {"error": f"its mesh cannot be read: {why}"}
         found = complexes.volumes_of_medit(outcome.mesh)
-        return row | json.loads(done.stdout) | {"regions": len(found), "volume_error": volume_error(found, expected)}
+        return row | quality | {"regions": len(found), "volume_error": volume_error(found, expected)}
 
 
 def right(row, tolerance):
@@ -138,25 +137,16 @@ def summary(rows):
     return tables.table(["faces", "mesher", "right", "our elements per second over its", "mean β, ours / its", "our least angle no smaller"], lines)
 
 
-def report_of(build, surface, folder, size, timeout, options=()):
-    file = pathlib.Path(folder, "report.json")
-    run_measured([build / "cli/octafront", "mesh", surface, "-o", "out.vtu", "--threads", "1", "-q", "--size", size, "--json", file,
-                  *options], folder, timeout)
-    report = json.loads(file.read_text())
-    file.unlink()
-    return report
-
-
 def by_regions(build, folder, name, size, timeout):
     """A row of the table: the complex, and its regions one by one."""
     given = folder / f"{name}.ply"
     points, triangles, sides = complexes.read_ply(given)
-    together = [report_of(build, given, folder, size, timeout)]
+    together = [mesh(build / "cli/octafront", given, folder, timeout, "--size", size).report]
     alone = []
     for region in sorted({r for pair in sides for r in pair if r >= 0}):
         own = folder / "region.off"
         complexes.write_off(own, points, complexes.boundary_of(triangles, sides, region))
-        alone.append(report_of(build, own, folder, size, timeout))
+        alone.append(mesh(build / "cli/octafront", own, folder, timeout, "--size", size).report)
     row = [name, f"{len(alone)}", size]
     each = []
     for reports in (together, alone):

@@ -10,6 +10,7 @@ import concurrent.futures
 import pathlib
 import statistics
 
+from bench.ours import counter
 from bench.pages.origin import written_by
 from bench.pages.tables import put, worst, write
 from bench.run.status import mesh_and_judge
@@ -19,19 +20,15 @@ POOR, POOR_FREE, LOW_FREE = ("elements below 0.2 or 10 degrees", "elements below
                              "not forced")
 
 
-def counter(row, stage, key):
-    return sum(s["counters"].get(key, 0) for s in row["report"]["stages"] if s["name"] == stage)
-
-
 def figures(model, row):
     report = row["report"]
-    work = counter(row, "repair", "triangles") + report["tets"]
+    work = counter(report, "repair", "triangles") + report["tets"]
     return {
         "model": model.name, "tets": report["tets"], "beta": row["beta_min"], "angle": row["dihedral_min"],
-        "poor": counter(row, "improve", POOR), "poor_free": counter(row, "improve", POOR_FREE),
-        "low_free": counter(row, "improve", LOW_FREE), "hausdorff": row["hausdorff_percent"],
+        "poor": counter(report, "improve", POOR), "poor_free": counter(report, "improve", POOR_FREE),
+        "low_free": counter(report, "improve", LOW_FREE), "hausdorff": row["hausdorff_percent"],
         "cpu": report["cpu_seconds"], "us": 1e6 * report["cpu_seconds"] / work,
-        "left": counter(row, "surface front", "places left as in the input"), "defect": row["defect"]}
+        "left": counter(report, "surface front", "places left as in the input"), "defect": row["defect"]}
 
 
 def summary(name, made, failed):
@@ -84,7 +81,7 @@ def main():
             "(`bench/pages/pictures.sh`):", "", "![](../images/derived-worst.png)", ""]
     with concurrent.futures.ThreadPoolExecutor(a.jobs) as pool:
         for name, options in list(RUNS.items())[:1 if a.automatic else 2]:
-            rows = list(pool.map(lambda m: mesh_and_judge(a.build, m, [*options, "--threads", "1"], a.timeout), models))
+            rows = list(pool.map(lambda m: mesh_and_judge(a.build, m, options, a.timeout, threads=1), models))
             made = [figures(m, r) for m, r in zip(models, rows) if r["status"] == 0]
             failed = [(m.name, r["message"][:200]) for m, r in zip(models, rows) if r["status"] != 0]
             text += [f"## Sizes: {name}", "", summary(name, made, failed).replace("\n", "\n\n"), *tables_of(name, made)]

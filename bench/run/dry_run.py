@@ -11,6 +11,7 @@ import subprocess
 import sys
 import tempfile
 
+from bench.ours import cpu_seconds
 from bench.pages import tables
 from bench.pages.origin import written_by
 
@@ -43,10 +44,6 @@ def case(octafront, model, options, scratch):
     return said, made, (scratch / "m.vtu").stat().st_size
 
 
-def stage_seconds(report, *words):
-    return sum(s["cpu_seconds"] for s in report["stages"] if any(w in s["name"] for w in words))
-
-
 def off_by(said, made):
     return f"{100 * (said / made - 1):+.0f} %"
 
@@ -63,7 +60,7 @@ def main():
             if "--fit" in sys.argv:
                 n = made["tets"]
                 rest = made["cpu_seconds"] - said["cpu_seconds"]
-                improve = stage_seconds(made, "improve")
+                improve = cpu_seconds(made, "improve")
                 print(f"{model} {' '.join(options)}: {n} tets; us/tet: fill etc. {1e6 * (rest - improve) / n:.1f} (improve {1e6 * improve / n:.1f}); "
                       f"dry {said['cpu_seconds']:.2f} s; bytes/tet {made['peak_memory_bytes'] / n:.0f} dry {said['peak_memory_bytes'] / 1e6:.0f} MB; file {size / n:.1f}; "
                       f"boundary {made['boundary_faces']}", flush=True)

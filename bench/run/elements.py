@@ -5,11 +5,10 @@ Writes its tables into docs/measured/benchmarks.md. --fast leaves out 1 M elemen
 """
 import argparse
 import csv
-import json
 import pathlib
-import subprocess
 import tempfile
 
+from bench.ours import mesh
 from bench.pages import tables
 from bench.pages.origin import written_by
 from bench.pages.tables import MEASURED, put, rewrite, spread_by
@@ -22,19 +21,19 @@ HEAD = ["model", "size", "expected", "made", "off %", "surface edges / wanted", 
         "volume: % within .7-1.4"]
 
 
-def mesh(build, model, *options):
+def report_of(build, model, *options):
     with tempfile.TemporaryDirectory() as folder:
-        report = pathlib.Path(folder, "r.json")
-        subprocess.run([build / "cli/octafront", "mesh", f"models/clean/{model}", "-o", pathlib.Path(folder, "m.vtu"),
-                        "--json", report, "-q", *map(str, options)], check=True)
-        return json.loads(report.read_text())
+        run = mesh(build / "cli/octafront", f"models/clean/{model}", folder, 3600, *options, threads=0)
+    if run.error:
+        raise SystemExit(f"{model}: {run.error}")
+    return run.report
 
 
 def targets(build, counts):
     rows, missed = [], 0
     for model in MODELS:
         for n in counts:
-            made = mesh(build, model, "--elements", n)["tets"]
+            made = report_of(build, model, "--elements", n)["tets"]
             missed += abs(made / n - 1) > 0.15
             rows.append([model, f"{n:,}", f"{made:,}", f"{100 * (made / n - 1):+.0f} %"])
             print(tables.row(rows[-1]), flush=True)
@@ -52,7 +51,7 @@ def predictions(build, diagonals):
         for name, options in (("automatic", []), ("diagonal / 25", ["--size", d / 25]),
                               ("diagonal / 60", ["--size", d / 60]),
                               ("diagonal / 25, --max-deviation 0.3 %", ["--size", d / 25, "--max-deviation", d * 0.003])):
-            r = mesh(build, model, *options)
+            r = report_of(build, model, *options)
             off = 100 * (r["expected_tets"] / r["tets"] - 1)
             missed += abs(off) > 15
             s, v = r["surface_edges"], r["volume_edges"]

@@ -11,6 +11,7 @@ import subprocess
 import sys
 import time
 
+from bench.ours import evaluated, mesh
 from bench.pages import experiments_page
 from bench.pages.origin import ORIGIN
 from bench.peers import surfaces
@@ -55,15 +56,12 @@ class Experiments:
     def skull(self):
         rows = {}
         for name, options in SKULL_RUNS.items():
-            mesh, report = self.work / f"skull-{name[0]}.vtu", self.work / "skull.json"
-            report.unlink(missing_ok=True)
-            self.run(self.octafront, "mesh", SKULL, "-o", mesh, "--threads", "1", "-q", "--json", report, *options)
-            if not report.exists():
+            run = mesh(self.octafront, SKULL, self.work, 3600, *options, out=f"skull-{name[0]}.vtu")
+            if run.error:
                 rows[name] = None
                 continue
-            judged = subprocess.run([self.build / "bench/octafront_evaluate", mesh], capture_output=True, text=True)
-            rows[name] = {"report": json.loads(report.read_text()),
-                          "judged": json.loads(judged.stdout) if judged.stdout else {"defect": judged.stderr}}
+            found, why = evaluated(self.build, run.mesh)
+            rows[name] = {"report": run.report, "judged": found or {"defect": why}}
         (self.work / "skull-runs.json").write_text(json.dumps(rows))
 
     def peers(self):

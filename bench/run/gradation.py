@@ -8,6 +8,7 @@ import pathlib
 import statistics
 import tempfile
 
+from bench.ours import cpu_seconds
 from bench.pages import tables
 from bench.pages.origin import written_by
 from bench.run.status import mesh_and_judge
@@ -42,7 +43,7 @@ HEAD = ["what", "gradation", "mean β", "above .8, %", "least β", "angles °", 
 
 def figures(row):
     report, classes = row["report"], row["beta_classes"]
-    fill = sum(s["cpu_seconds"] for s in report["stages"] if s["name"].startswith("volume front"))
+    fill = cpu_seconds(report, "volume front")
     return {"mean": row["beta_mean"], "above": 100 * classes[-1] / sum(classes), "least": row["beta_min"],
             "low": row["dihedral_min"], "high": row["dihedral_max"], "tets": row["tets"],
             "fill": row["tets"] / fill / 1000, "all": row["tets"] / report["cpu_seconds"] / 1000,
@@ -61,7 +62,7 @@ def rows_of(build, what, models, options, timeout):
     for gradation in GRADATIONS:
         made = []
         for model in models:
-            row = mesh_and_judge(build, model, [*options, "--gradation", str(gradation), "--threads", "1"], timeout)
+            row = mesh_and_judge(build, model, [*options, "--gradation", str(gradation)], timeout, threads=1)
             if row["status"] != 0 or row["defect"]:
                 raise SystemExit(f"{model.name} at {gradation}: {row['message'] or row['defect']}")
             made.append(figures(row))

@@ -8,15 +8,16 @@ included. From STL: the same models from a binary STL file, triangulated and fil
 elements, and how CPU time grows from 100,000 to there.
 """
 import argparse
-import json
 import pathlib
 import tempfile
 
+from bench import ours
+from bench.ours import cpu_seconds, evaluated
 from bench.pages import tables
 from bench.pages.origin import written_by
 from bench.peers import gmsh, surfaces, tetgen
-from bench.process import finish, run_measured
-from bench.run.volume import evaluate, exponent
+from bench.process import run_measured
+from bench.run.volume import exponent
 
 MODELS = ["bunny00.off", "armadillo.off", "elephant.off", "couplingdown.off", "pinion.off"]
 COUNTS = [1_000_000]
@@ -24,19 +25,8 @@ SMALLEST = 100_000
 PEERS_UP_TO = 5_000_000
 
 
-def mesh(build, folder, timeout, *options, threads=1):
-    """A run of ours; outcome.report is what it says of itself."""
-    folder = pathlib.Path(folder).resolve()
-    made, report = folder / "ours.msh", folder / "report.json"
-    outcome = run_measured([build / "cli/octafront", "mesh", *options, "--threads", str(threads), "-o", made, "--json", report,
-                            "-q"], ".", timeout)
-    if not outcome.error:
-        outcome.report = json.loads(report.read_text())
-    return finish(outcome, made)
-
-
-def stage_seconds(outcome, name):
-    return sum(s["cpu_seconds"] for s in outcome.report["stages"] if s["name"].startswith(name))
+def mesh(build, folder, timeout, source, *options, threads=1):
+    return ours.mesh(build / "cli/octafront", source, folder, timeout, *options, out="ours.msh", threads=threads)
 
 
 def meshers(build):
@@ -57,15 +47,15 @@ def least(runs):
                     continue
                 row = best.setdefault(name, {"outcome": outcome, "error": ""})
                 if turn == 0:
-                    row["quality"] = evaluate(runs["build"], outcome.mesh, runs["surface"])
-                    row["error"] = row["quality"]["defect"] or ""
+                    row["quality"], why = evaluated(runs["build"], outcome.mesh, runs["surface"], "--kept")
+                    row["error"] = why or row["quality"]["defect"] or ""
                 if outcome.cpu_seconds < row["outcome"].cpu_seconds:
                     row["outcome"] = outcome
     return best
 
 
 def kept_rows(model, best):
-    ours = best["octafront"]
+    octafront = best["octafront"]
     rows = []
     for name, row in best.items():
         if row["error"]:
@@ -75,11 +65,11 @@ def kept_rows(model, best):
         n = q["tets"]
         rate = n / outcome.cpu_seconds
         filled = improved = "–"
-        if hasattr(outcome, "report"):
-            filled = f"{n / stage_seconds(outcome, 'volume front') / 1e3:,.0f}"
-            improved = f"{1e6 * stage_seconds(outcome, 'improve') / n:.2f}"
-        ratio = "" if row is ours or ours["error"] else \
-            f"{ours['quality']['tets'] / ours['outcome'].cpu_seconds / rate:.2f}"
+        if outcome.report:
+            filled = f"{n / cpu_seconds(outcome.report, 'volume front') / 1e3:,.0f}"
+            improved = f"{1e6 * cpu_seconds(outcome.report, 'improve') / n:.2f}"
+        ratio = "" if row is octafront or octafront["error"] else \
+            f"{octafront['quality']['tets'] / octafront['outcome'].cpu_seconds / rate:.2f}"
         rows.append([model, name, f"{n:,}", f"{outcome.cpu_seconds:.2f}", f"{rate / 1e3:,.0f}", ratio, filled, improved, f"{outcome.peak_bytes / n:.0f}",
                      f"{q['beta_mean']:.4f}", f"{100 * q['beta_classes'][4] / n:.1f}", f"{q['dihedral_min']:.1f}", f"{q['dihedral_max']:.1f}"])
     return rows
@@ -113,7 +103,7 @@ def stl_row(build, model, count, runs, timeout):
                     best[threads] = outcome
     one = best[1]
     report, n = one.report, one.report["tets"]
-    share = lambda stage: f"{100 * stage_seconds(one, stage) / one.cpu_seconds:.0f}"
+    share = lambda stage: f"{100 * cpu_seconds(one.report, stage) / one.cpu_seconds:.0f}"
     quality, edges = report["quality"], report["volume_edges"]
     return [model, f"{n:,}", f"{one.cpu_seconds:.2f}", f"{n / one.cpu_seconds / 1e3:,.0f}", share("size field"), share("surface front"), share("volume front"),
             share("improve"), f"{n / report['expected_tets']:.3f}", f"{edges['mean_ratio']:.3f}", f"{100 * edges['share_within_0.7_1.4']:.1f}",

@@ -15,6 +15,7 @@ import subprocess
 import tempfile
 
 from bench.models.dicom_series import write_series
+from bench.ours import mesh, stage
 from bench.pages import tables
 from bench.pages.origin import ORIGIN, written_by
 from bench.process import finish, run_measured
@@ -70,18 +71,15 @@ def as_inr(source, target):
 
 
 def mesh_with_ours(build, image, folder, timeout, options):
-    out, report = pathlib.Path(folder, "out.msh"), pathlib.Path(folder, "out.json")
-    outcome = run_measured([build / "cli/octafront", "mesh", image, "-o", out, "--threads", "1", "-q", "--json", report, *options],
-                           folder, timeout)
-    outcome = finish(outcome, out)
+    outcome = mesh(build / "cli/octafront", image, folder, timeout, *options, out="out.msh")
     if outcome.mesh:
-        outcome.log = improvement(json.loads(report.read_text()))
+        outcome.log = improvement(outcome.report)
     return outcome
 
 
 def improvement(report):
     """What the report says of the elements that stayed below .4."""
-    counters = next(s for s in report["stages"] if s["name"] == "improve")["counters"]
+    counters = stage(report, "improve")["counters"]
     causes = {"a wedge": "wedges", "a corner": "corners of curves", "thin walls": "thin layers", "kept triangles": "kept triangles"}
     named = [f"{int(counters.get('forced by ' + key, 0))} {words}" for key, words in causes.items() if counters.get("forced by " + key)]
     return {"below_04": int(counters["elements below 0.4"]), "not_forced": int(counters["not forced"]), "forced": named}

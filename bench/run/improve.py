@@ -19,6 +19,7 @@ import shutil
 import sys
 import tempfile
 
+from bench import ours
 from bench.pages import tables
 from bench.pages.origin import written_by
 from bench.peers import gmsh, netgen, surfaces, tetgen
@@ -51,16 +52,11 @@ def octafront(build, *arguments):
 
 
 def judged(build, mesh, *surface):
-    done = run_measured([build / "bench/octafront_evaluate", mesh, *surface], ".", TIMEOUT)
-    if done.error:
-        raise SystemExit(f"{mesh}: {done.log}")
-    r = json.loads(done.log)
+    r, why = ours.evaluated(build, mesh, *surface)
+    if why:
+        raise SystemExit(f"{mesh}: {why}")
     r["good"] = 100 * r["beta_classes"][4] / r["tets"]
     return r
-
-
-def stage(report, name):
-    return next(s for s in json.loads(pathlib.Path(report).read_text())["stages"] if s["name"] == name)
 
 
 def cells(r, targets):
@@ -74,11 +70,10 @@ def cells(r, targets):
 
 def one_size(build, source, folder):
     """The size that gives about ELEMENTS elements everywhere: measured once coarsely, elements go like its third power."""
-    mesh, report = folder / "mesh.vtu", folder / "report.json"
-    done = octafront(build, "mesh", source, "-o", mesh, "--elements", ELEMENTS // 10, "--improve", "none", "--json", report, "-q")
+    done = ours.mesh(build / "cli/octafront", source, folder, TIMEOUT, "--elements", ELEMENTS // 10, "--improve", "none", threads=0)
     if done.error:
         return None
-    volume = json.loads(report.read_text())["volume"]
+    volume = done.report["volume"]
     return (ELEMENTS_OF_UNIT_SIZE * volume / ELEMENTS) ** (1 / 3)
 
 
@@ -99,18 +94,16 @@ def own_meshes(build, kind, models, folder):
                 continue
             sizes = ["--size", f"{h:.6g}"]
         for level in ("default", "best"):
-            mesh, report = folder / "mesh.vtu", folder / "report.json"
-            done = octafront(build, "mesh", source, "-o", mesh, *sizes, "--improve", level, "--threads", 1,
-                             "--json", report, "-q")
+            done = ours.mesh(build / "cli/octafront", source, folder, TIMEOUT, *sizes, "--improve", level)
             if done.error:
                 rows.append(failed(level, model, done.error))
                 continue
-            r = judged(build, mesh, source)
-            improve = stage(report, "improve")
+            r = judged(build, done.mesh, source)
+            improve = ours.stage(done.report, "improve")
             r["us"] = 1e6 * improve["cpu_seconds"] / r["tets"]
             count = improve["counters"]
             below = [f"{count['elements below 0.4']:.0f}", f"{count['not forced']:.0f}"]
-            ratio = json.loads(report.read_text())["volume_edges"]["mean_ratio"]
+            ratio = done.report["volume_edges"]["mean_ratio"]
             rows.append([f"{kind}, {level}", model, f"{r['tets']:,}", *cells(r, TARGETS[kind][level]), *below, f"{ratio:.3f}",
                          f"{r['hausdorff_percent']:.3f}", "valid" if not r["defect"] else "INVALID"])
             print(" | ".join(rows[-1]), flush=True)
@@ -230,7 +223,7 @@ def peer_rows(build, model, name, surface, folder):
             rows.append(failed(f"octafront {level}", run))
             continue
         r = judged(build, mesh)
-        r["us"] = 1e6 * stage(report, "improve")["cpu_seconds"] / before["tets"]
+        r["us"] = 1e6 * ours.stage(json.loads(report.read_text()), "improve")["cpu_seconds"] / before["tets"]
         rows.append([model, name, f"octafront {level}", f"{r['tets']:,}", *cells(r, {})])
     for row in rows:
         print(" | ".join(row), flush=True)

@@ -12,6 +12,7 @@ import statistics
 import subprocess
 import tempfile
 
+from bench import ours
 from bench.pages.origin import written_by
 from bench.pages.tables import MEASURED, put, rewrite, table, worst
 from bench.process import run_bounded
@@ -40,7 +41,7 @@ def measure(program, model, case, timeout):
             return row
         made = json.loads(report.read_text())
         checked = subprocess.run([program, "check", mesh], capture_output=True, text=True)
-        stage = next(s for s in made["stages"] if s["name"] == "boundary layers")
+        stage = ours.stage(made, "boundary layers")
         return row | {"valid": checked.returncode == 0, "tets": made["tets"], "layers": made["layers"],
                       "stage": stage["cpu_seconds"], "rounds": dict(stage["counters"]).get("rounds")
                       if isinstance(stage["counters"], dict) else None, "regions": made["regions"]}

@@ -14,21 +14,18 @@ import platform
 import subprocess
 import tempfile
 
+from bench.ours import evaluated, mesh
 from bench.pages.tables import spread_by
 from bench.peers import cgal, gmsh, netgen, tetgen
-from bench.process import finish, run_measured
 
 MODELS = ["bunny00", "elephant", "armadillo", "fandisk_large", "anchor_dense"]
 
 
 def ours(build, method, surface, folder, timeout, *options):
-    folder = pathlib.Path(folder)
-    outcome = run_measured([build / "cli/octafront", "mesh", pathlib.Path(surface).resolve(), "-o", "out.mesh", "--json",
-                            "report.json", "--threads", "1", "-q", "--method", method, *options], folder, timeout)
-    if not outcome.error:
-        stages = json.loads((folder / "report.json").read_text())["stages"]
-        outcome.stage_seconds = sum(s["cpu_seconds"] for s in stages)
-    return finish(outcome, folder / "out.mesh")
+    outcome = mesh(build / "cli/octafront", surface, folder, timeout, "--method", method, *options, out="out.mesh")
+    if outcome.report:
+        outcome.stage_seconds = sum(s["cpu_seconds"] for s in outcome.report["stages"])
+    return outcome
 
 
 def kept_runs(build):
@@ -62,11 +59,8 @@ def judged(build, run, surface, timeout, kept):
                "peak_mb": outcome.peak_bytes / 1e6}
         if outcome.mesh is None:
             return row
-        done = subprocess.run([build / "bench/octafront_evaluate", outcome.mesh, surface, *(["--kept"] if kept else [])],
-                              capture_output=True, text=True)
-        if done.returncode != 0:
-            return row | {"error": f"its mesh cannot be read: {done.stderr.strip()[:120]}"}
-        return row | json.loads(done.stdout)
+        found, why = evaluated(build, outcome.mesh, surface, *(["--kept"] if kept else []))
+        return row | (found or {"error": f"its mesh cannot be read: {why}"})
 
 
 def uniform_surface(build, model, elements, folder):

@@ -4,7 +4,6 @@ Usage: bench/run.sh periodic [--program OCTAFRONT] [--timeout SECONDS] [--no-sol
 Both meshers use one thread. Writes docs/measured/periodic.md.
 """
 import argparse
-import json
 import pathlib
 import sys
 import tempfile
@@ -13,6 +12,7 @@ import meshio
 import numpy as np
 
 from bench.models import sector
+from bench.ours import mesh
 from bench.pages import tables
 from bench.pages.origin import written_by
 from bench.process import run_measured
@@ -96,13 +96,10 @@ def fifty_places(radius):
 
 def ours(folder, program, timeout, name, source, *options, pairs=None):
     pairs = pairs or pairs_of
-    report = folder / "report.json"
-    outcome = run_measured([program, "mesh", source, *options, "--threads", 1, "-q", "-o", folder / "ours.msh", "-o", folder / "ours.inp",
-                            "--json", report], folder, timeout)
+    outcome = mesh(program, source, folder, timeout, *options, "-o", folder / "ours.inp", out="ours.msh")
     if outcome.error:
         return [name, f"{outcome.error} {outcome.log.strip()[:200]}", *[""] * (len(HEAD) - 2)]
-    tets = json.loads(report.read_text())["tets"]
-    return row_of(name, tets, quality(tets_of(folder / "ours.msh")), outcome, pairs(folder / "ours.msh"))
+    return row_of(name, outcome.report["tets"], quality(tets_of(folder / "ours.msh")), outcome, pairs(folder / "ours.msh"))
 
 
 HEAD = ["case", "elements", "mean β", "least angle °", "most °", "CPU s", "pairs", "without", "off by"]

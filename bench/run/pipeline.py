@@ -5,11 +5,10 @@ CPU seconds, one thread, the least of N runs; a size is given so that the count 
 --beside: another build of octafront, run in turn with this one; a second table shows this one's figures over its.
 """
 import argparse
-import json
 import pathlib
-import subprocess
 import tempfile
 
+from bench.ours import mesh
 from bench.pages import tables
 from bench.pages.origin import written_by
 from bench.pages.tables import MEASURED, put, rewrite, some, spread_by
@@ -24,12 +23,11 @@ BESIDE_HEAD = ["model", "elements", "size field", "surface front", "volume front
 
 def run_once(program, model, count):
     with tempfile.TemporaryDirectory() as folder:
-        report = pathlib.Path(folder, "report.json")
-        subprocess.run([program, "mesh", f"models/clean/{model}", "-o", pathlib.Path(folder, "m.vtu"),
-                        "--elements", str(count), "--threads", "1", "--json", report, "-q"], check=True)
-        r = json.loads(report.read_text())
+        run = mesh(program, f"models/clean/{model}", folder, 3600, "--elements", count)
+    if run.error:
+        raise SystemExit(f"{model}: {run.error}")
     # Earlier tries for the element count are not what is measured here.
-    return r, {s["name"]: s["cpu_seconds"] for s in r["stages"] if "earlier" not in s["name"]}
+    return run.report, {s["name"]: s["cpu_seconds"] for s in run.report["stages"] if "earlier" not in s["name"]}
 
 
 def measure(programs, model, count, runs):

@@ -13,6 +13,7 @@ import pathlib
 import subprocess
 import tempfile
 
+from bench.ours import stages
 from bench.pages import tables
 from bench.pages.origin import written_by
 
@@ -33,11 +34,11 @@ def run(octafront, model, elements, ranks, folder):
 
 def of_stage(told, name, key):
     """Per rank; tries that were not kept count too."""
-    return [sum(s[key] for s in row["stages"] if s["name"].startswith(name)) for row in told["ranks"]]
+    return [sum(s[key] for s in stages(row, name)) for row in told["ranks"]]
 
 
 def wall(told, name):
-    return sum(s["wall_seconds"] for s in told["stages"] if s["name"].startswith(name))
+    return sum(s["wall_seconds"] for s in stages(told, name))
 
 
 def row_of_run(told, ranks):

@@ -7,12 +7,10 @@ import argparse
 import collections
 import concurrent.futures
 import csv
-import json
 import pathlib
-import subprocess
 import tempfile
-import time
 
+from bench.ours import evaluated, mesh
 from bench.pages.origin import written_by
 from bench.pages.tables import put, spread, write
 
@@ -20,27 +18,13 @@ SKULLS = ["skull_119k.off", "skull_204k.off", "skull_534k.off"]  # isosurfaces o
 SKULL_TIMEOUT = 1200
 
 
-def run(command, timeout):
-    """(exit status or None if it took too long, stdout, stderr, wall seconds)"""
-    start = time.monotonic()
-    try:
-        done = subprocess.run(command, capture_output=True, text=True, timeout=timeout)
-        return done.returncode, done.stdout, done.stderr, time.monotonic() - start
-    except subprocess.TimeoutExpired:
-        return None, "", "no end within the time limit", time.monotonic() - start
-
-
-def mesh_and_judge(build, model, options, timeout):
+def mesh_and_judge(build, model, options, timeout, threads=0):
     with tempfile.TemporaryDirectory() as folder:
-        out, report = pathlib.Path(folder, "mesh.vtu"), pathlib.Path(folder, "report.json")
-        status, _, message, seconds = run(
-            [build / "cli/octafront", "mesh", model, "-o", out, "--json", report, "-q", *options], timeout)
-        row = {"status": status, "message": message.strip(), "seconds": seconds}
-        if status == 0:
-            kept = ["--kept"] if "--keep-surface" in options else []
-            _, judged, error, _ = run([build / "bench/octafront_evaluate", out, model, *kept], timeout)
-            row |= json.loads(judged) if judged else {"defect": error}
-            row["report"] = json.loads(report.read_text())
+        run = mesh(build / "cli/octafront", model, folder, timeout, *options, threads=threads)
+        row = {"status": run.status, "message": run.log.strip() if run.status is not None else run.error, "seconds": run.wall_seconds, "report": run.report}
+        if run.mesh:
+            found, why = evaluated(build, run.mesh, model, *(["--kept"] if "--keep-surface" in options else []), timeout=timeout)
+            row |= found or {"defect": why}
         return row
 
 

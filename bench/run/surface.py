@@ -10,12 +10,12 @@ import csv
 import json
 import math
 import pathlib
-import resource
 import subprocess
 import tempfile
 
 from bench.pages.origin import ROOT, written_by
 from bench.pages.tables import put, row, spread_by, table, write
+from bench.process import run_measured
 
 SETTINGS = [("automatic", None), ("diagonal / 40", 40), ("diagonal / 100", 100)]
 SPEED_MODELS = ["bunny00.off", "elephant.off", "fandisk_large.off", "anchor_dense.off", "armadillo.off", "3torus.off"]
@@ -144,13 +144,11 @@ def speed(build, rows):
 
 def cpu_seconds(command, folder):
     """(CPU seconds or None if it failed)"""
-    before = resource.getrusage(resource.RUSAGE_CHILDREN)
     try:
-        done = subprocess.run(command, cwd=folder, capture_output=True, timeout=PEER_TIMEOUT)
-    except (subprocess.TimeoutExpired, FileNotFoundError):
+        done = run_measured(command, folder, PEER_TIMEOUT)
+    except FileNotFoundError:
         return None
-    after = resource.getrusage(resource.RUSAGE_CHILDREN)
-    return after.ru_utime - before.ru_utime if done.returncode == 0 else None
+    return None if done.error else done.cpu_seconds
 
 
 def make_with_gmsh(stl, size, folder, _):

@@ -8,16 +8,13 @@ of another build stay as they are.
 import argparse
 import math
 import pathlib
-import subprocess
 import tempfile
 
-import json
-
+from bench.ours import evaluated, mesh
 from bench.pages import tables
 from bench.pages.origin import written_by
 from bench.peers import gmsh, tetgen
 from bench.peers.surfaces import write_off
-from bench.process import finish, run_measured
 
 THICKNESS = [1e-1, 1e-2, 1e-3, 1e-4, 1e-5, 1e-6]
 HEAD = ["body", "thickness", "mesher", "volume, %", "elements", "least angle", "most angle", "CPU s"]
@@ -98,11 +95,7 @@ def shell(t):
 
 
 def octafront(program, *options):
-    def run(surface, folder, timeout):
-        outcome = run_measured([program, "mesh", surface, "-o", "out.mesh", "--threads", "1", "-q", *options],
-                               pathlib.Path(folder), timeout)
-        return finish(outcome, pathlib.Path(folder, "out.mesh"))
-    return run
+    return lambda surface, folder, timeout: mesh(program, surface, folder, timeout, *options, out="out.mesh")
 
 
 def judged(build, run, surface, timeout):
@@ -110,10 +103,9 @@ def judged(build, run, surface, timeout):
         outcome = run(surface, folder, timeout)
         if outcome.mesh is None:
             return f"no mesh: {outcome.error[:60]}", "", "", "", f"{outcome.cpu_seconds:.1f}"
-        done = subprocess.run([build / "bench/octafront_evaluate", outcome.mesh, surface], capture_output=True, text=True)
-        if done.returncode != 0:
+        j, why = evaluated(build, outcome.mesh, surface)
+        if why:
             return "not readable", "", "", "", f"{outcome.cpu_seconds:.1f}"
-        j = json.loads(done.stdout)
         volume = f"{j['volume_percent']:+.3f}" + (" **not valid**" if j["defect"] else "")
         return volume, f"{j['tets']:,}", f"{j['dihedral_min']:.3g}", f"{j['dihedral_max']:.5g}", f"{outcome.cpu_seconds:.1f}"
 

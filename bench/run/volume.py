@@ -16,10 +16,11 @@ import pathlib
 import tempfile
 import time
 
+from bench.ours import evaluated, mesh, stage
 from bench.pages import tables
 from bench.pages.origin import written_by
 from bench.peers import gmsh, netgen, tetgen
-from bench.process import finish, run_measured
+from bench.process import run_measured
 
 MODELS = ["bunny00.off", "refined_elephant.off", "fandisk_large.off"]
 COUNTS = [100_000, 1_000_000, 4_000_000, 10_000_000]
@@ -35,15 +36,11 @@ def surface_of_size(build, model, size, out):
 
 
 def fill_ours(build, surface, folder, timeout, core, threads):
-    folder = pathlib.Path(folder).resolve()
-    mesh, report = folder / "ours.msh", folder / "report.json"
-    outcome = run_measured([build / "cli/octafront", "mesh", surface, "--keep-surface", "--improve", "none", "--core", core,
-                            "--threads", str(threads), "-o", mesh, "--json", report, "-q"], ".", timeout)
-    if not outcome.error:
-        stage = next(s for s in json.loads(report.read_text())["stages"] if s["name"] == "volume front")
-        outcome.stage_seconds, outcome.stage_wall_seconds = stage["cpu_seconds"], stage["wall_seconds"]
-        outcome.counters = stage["counters"]
-    return finish(outcome, mesh)
+    outcome = mesh(build / "cli/octafront", surface, folder, timeout, "--keep-surface", "--improve", "none", "--core", core, out="ours.msh", threads=threads)
+    if outcome.report:
+        filled = stage(outcome.report, "volume front")
+        outcome.stage_seconds, outcome.stage_wall_seconds = filled["cpu_seconds"], filled["wall_seconds"]
+    return outcome
 
 
 def meshers(build):
@@ -57,21 +54,13 @@ def meshers(build):
     }
 
 
-def evaluate(build, mesh, surface):
-    judged = run_measured([build / "bench/octafront_evaluate", mesh, surface, "--kept"], ".", 600)
-    try:
-        return json.loads(judged.log)
-    except json.JSONDecodeError:
-        return {"defect": judged.error or judged.log.strip()[:100]}
-
-
 def measure(build, name, mesher, surface, count, timeout):
     with tempfile.TemporaryDirectory() as folder:
         outcome = mesher(surface, folder, timeout)
         row = {"mesher": name, "outcome": outcome, "error": outcome.error}
         if outcome.mesh:
-            quality = evaluate(build, outcome.mesh, surface)
-            row |= {"tets": quality.get("tets", 0), "quality": quality, "error": quality["defect"] or ""}
+            quality, why = evaluated(build, outcome.mesh, surface, "--kept")
+            row |= {"tets": quality["tets"], "quality": quality, "error": quality["defect"] or ""} if quality else {"error": why}
     return row
 
 
@@ -87,7 +76,7 @@ def calibrated_sizes(build, model, counts, folder):
     for _ in range(2):
         surface_of_size(build, model, size, probe)
         filled = fill_ours(build, probe, folder, 600, "lattice", 0)
-        tets = json.loads(pathlib.Path(folder, "report.json").read_text())["tets"] if filled.mesh else 100_000
+        tets = filled.report["tets"] if filled.mesh else 100_000
         size *= (tets / 100_000) ** (1 / 3)
     return [size * (100_000 / count) ** (1 / 3) for count in counts]
 
@@ -158,9 +147,9 @@ def ladder_costs(rows):
     made = []
     for (model, count), group in rows.items():
         for row in group:
-            counters = getattr(row["outcome"], "counters", None)
-            if row["error"] or counters is None:
+            if row["error"] or not row["outcome"].report:
                 continue
+            counters = stage(row["outcome"].report, "volume front")["counters"]
             seconds = counters.get("closing CPU seconds", 0)
             made.append([model, f"{count:,}", row["mesher"][11:], f"{counters['faces left']:.0f}", f"{counters.get('cavities', 0):.0f}", f"{seconds:.3f}",
                          f"{100 * seconds / row['outcome'].stage_seconds:.1f}"])
