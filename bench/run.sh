@@ -1,6 +1,6 @@
 #!/usr/bin/env bash
 # The benchmarks, by name. Builds what they need.
-#   bench/run.sh status      every model of bench/models.csv: valid? how true is the boundary?   -> docs/measured/status.md
+#   bench/run.sh status      every model of bench/models/models.csv: valid? how true is the boundary?   -> docs/measured/status.md
 #   bench/run.sh derived     the clean models and what is derived from them: any element that nothing forces? any cliff?
 #                                                                                    -> docs/measured/derived-status.md
 #   bench/run.sh pipeline    three models at 100 k and 1 M elements, elements per second and stage -> docs/measured/benchmarks.md
@@ -9,8 +9,10 @@
 #   bench/run.sh elements    --elements N met? prediction, sizes in the volume          -> docs/measured/benchmarks.md
 #   bench/run.sh gradation   gradations from .05 to .5 side by side                       -> docs/measured/gradation.md
 #   bench/run.sh volume      kept surfaces up to 10 M elements, against TetGen, HXT and Netgen -> docs/measured/volume-bench.md
-#   bench/run.sh graded      sizes that follow curvature, against HXT and TetGen side by side; from STL -> docs/measured/volume-bench.md
+#   bench/run.sh graded      sizes that follow curvature, against HXT and TetGen side by side; from STL -> docs/measured/graded.md
 #   bench/run.sh peers       surfaces kept and made anew, against TetGen, Gmsh, Netgen and CGAL -> build/release/experiments/peers.json
+#   bench/run.sh experiments [STEP...]   three methods, a skull and those peers: about 20 minutes -> docs/measured/experiments.md, peers.md;
+#                            steps: dragon compare growth skull peers pictures page
 #   bench/run.sh complexes   several regions in one mesh, against TetGen and Gmsh       -> docs/measured/complexes.md
 #   bench/run.sh improve     improvement against its targets, never worse, start meshes of others -> docs/measured/improve-bench.md
 #   bench/run.sh adapt       the Working Group's cases of metrics, a loop with FEniCSx -> docs/measured/adapt.md
@@ -28,7 +30,7 @@
 #                            and Netgen; --models FOLDER: other files  -> docs/measured/cad.md
 #   bench/run.sh layers      boundary layers on all clean models: coverage, validity, quality, speed -> docs/measured/layers.md
 #   bench/run.sh layers_shapes   the same on bodies whose layers are known; layers_flows: around bodies, in vessels; layers_peers: beside snappyHexMesh
-#                            and Gmsh; layers_solved: a laminar pipe with and without -> docs/measured/layers.md
+#                            and Gmsh (-> docs/measured/layers-flows.md); layers_solved: a laminar pipe with and without -> docs/measured/layers-solved.md
 #   bench/run.sh inside      sheets, lines and points in a block, beside Gmsh and TetGen     -> docs/measured/inside.md
 #   bench/run.sh periodic    periodic cells with and without periods, beside Gmsh, solved    -> docs/measured/periodic.md
 #   bench/run.sh ranks       one mesh by 1, 2, 4 and 8 processes: memory, bytes, imbalance, what all do alike -> docs/measured/ranks.md
@@ -41,8 +43,8 @@ cd "$(dirname "$0")/.."
 source scripts/lib/apt.sh
 
 case ${1:-} in
-  status | derived | pipeline | surface | elements | gradation | volume | graded | peers | complexes | improve | adapt | adapt_loops | formats | parts | second_order | dry_run | repair | known_answers | damage | images | thin | budget | cad | layers | layers_shapes | layers_flows | layers_peers | layers_solved | inside | periodic | ranks | threads | answers) ;;
-  *) sed -n '2,38s/^# \{0,1\}//p' "$0"; exit 2 ;;
+  status | derived | pipeline | surface | elements | gradation | volume | graded | peers | experiments | complexes | improve | adapt | adapt_loops | formats | parts | second_order | dry_run | repair | known_answers | damage | images | thin | budget | cad | layers | layers_shapes | layers_flows | layers_peers | layers_solved | inside | periodic | ranks | threads | answers) ;;
+  *) sed -n '2,/^set/s/^# \{0,1\}//p' "$0"; exit 2 ;;
 esac
 need_packages "${build_packages[@]}" python3
 [ "$1" != surface ] || need_packages gmsh netgen libcgal-dev libgmp-dev libmpfr-dev
@@ -50,9 +52,11 @@ need_packages "${build_packages[@]}" python3
 [ "$1" != improve ] || need_packages "${peer_packages[@]}"
 [ "$1" != thin ] || need_packages tetgen gmsh
 [ "$1" != cad ] || need_packages gmsh netgen "${cad_packages[@]}"
-[ "$1" != cad ] || [ -d cad-models ] || scripts/get-cad.sh
+[ "$1" != cad ] || [ -d cad-models ] || bench/models/get-cad.sh
 [ "$1" != answers ] || need_packages gmsh python3-gmsh netgen calculix-ccx python3-numpy python3-meshio "${cad_packages[@]}"
 [ "$1" != peers ] || need_packages "${peer_packages[@]}" libcgal-dev libgmp-dev libmpfr-dev libboost-dev
+[ "$1" != experiments ] || need_packages "${peer_packages[@]}" libcgal-dev libgmp-dev libmpfr-dev libboost-dev python3-matplotlib python3-vtk9 xvfb xauth
+[ "$1" != experiments ] || [ -d models/ct ] || bench/models/get-models.sh --ct
 [ "$1" != ranks ] || need_packages "${mpi_packages[@]}"
 [ "$1" != complexes ] || need_packages "${test_packages[@]}" tetgen gmsh python3-gmsh
 [ "$1" != known_answers ] || need_packages "${test_packages[@]}"
@@ -63,8 +67,8 @@ need_packages "${build_packages[@]}" python3
 { [ "$1" != inside ] && [ "$1" != periodic ]; } || need_packages python3-numpy python3-meshio python3-gmsh tetgen
 [ "$1" != layers_peers ] || need_packages python3-gmsh
 [ "$1" != images ] || need_packages libcgal-dev libgmp-dev libmpfr-dev libboost-dev
-[ "$1" != images ] || [ -d volumes ] || scripts/get-volumes.sh
-[ "$1" = formats ] || [ "$1" = ranks ] || [ "$1" = adapt ] || [ "$1" = complexes ] || [ "$1" = images ] || [ "$1" = thin ] || [ "$1" = cad ] || [ "$1" = answers ] || [ -d models/clean ] || scripts/get-models.sh --ct
+[ "$1" != images ] || [ -d volumes ] || bench/models/get-volumes.sh
+[ "$1" = formats ] || [ "$1" = ranks ] || [ "$1" = adapt ] || [ "$1" = complexes ] || [ "$1" = images ] || [ "$1" = thin ] || [ "$1" = cad ] || [ "$1" = answers ] || [ -d models/clean ] || bench/models/get-models.sh --ct
 tests=OFF
 [ "$1" != complexes ] && [ "$1" != known_answers ] || tests=ON  # what makes complexes is theirs, and a judge
 mpi=()
@@ -73,21 +77,21 @@ cmake --preset release -DOCTAFRONT_BUILD_TESTS=$tests "${mpi[@]}" >/dev/null
 cmake --build --preset release --target octafront_cli octafront_evaluate octafront_judge_surface
 [ "$1" != cad ] || cmake --build --preset release --target octafront_cad_program octafront_judge_cad
 [ "$1" != answers ] || cmake --build --preset release --target octafront_cad_program
-[ "$1" != derived ] || [ -d models/derived ] || scripts/derive-models.sh build/release/cli/octafront
+[ "$1" != derived ] || [ -d models/derived ] || bench/models/derive-models.sh build/release/cli/octafront
 [ "$1" != adapt ] || cmake --build --preset release --target octafront_adapt_cases octafront_python
 [ "$1" != adapt_loops ] || cmake --build --preset release --target octafront_adapt_loops
 [ "$1" != improve ] || cmake --build --preset release --target octafront_never_worse
-[ "$1" != formats ] || { cmake --build --preset release --target octafront_write_formats; exec python3 bench/formats.py build/release "${@:2}"; }
-[ "$1" != parts ] || { cmake --build --preset release --target octafront_write_parts; exec python3 bench/parts.py build/release "${@:2}"; }
+[ "$1" != formats ] || cmake --build --preset release --target octafront_write_formats
+[ "$1" != parts ] || cmake --build --preset release --target octafront_write_parts
 [ "$1" != threads ] || cmake --build --preset release --target octafront_threads
 [ "$1" != second_order ] || cmake --build --preset release --target octafront_second_order
 [ "$1" != complexes ] || cmake --build --preset release --target make_complexes
 [ "$1" != known_answers ] || cmake --build --preset release --target octafront_judge_answer
 [ "$1" != repair ] || cmake --build --preset release --target octafront_judge_repair
-[ "$1" != peers ] || cmake --build --preset release --target peer_cgal_mesh || echo "without CGAL's mesher" >&2
+{ [ "$1" != peers ] && [ "$1" != experiments ]; } || cmake --build --preset release --target peer_cgal_mesh || echo "without CGAL's mesher" >&2
 [ "$1" != images ] || cmake --build --preset release --target octafront_judge_image peer_cgal_labels
-[[ $1 != layers_* ]] || [ -d models/flows ] || scripts/get-flows.sh build/release/cli/octafront
+[[ $1 != layers_* ]] || [ -d models/flows ] || bench/models/get-flows.sh build/release/cli/octafront
 python=python3
 [ "$1" != repair ] && [ "$1" != known_answers ] && [ "$1" != damage ] || python=/usr/bin/python3  # Debian's, with its NumPy
 [[ $1 != layers_* ]] && [ "$1" != inside ] && [ "$1" != periodic ] && [ "$1" != answers ] || python=/usr/bin/python3
-exec "$python" "bench/$1.py" build/release "${@:2}"
+exec "$python" -m "bench.run.$1" build/release "${@:2}"

@@ -21,7 +21,7 @@ for argument in "$@"; do
 done
 [ -z "$quick" ] || [ -z "$write" ] || { echo "hashes: --write needs every model" >&2; exit 2; }
 
-[ -d models/clean ] || scripts/get-models.sh
+[ -d models/clean ] || bench/models/get-models.sh
 if [ -z "$program" ]; then
   need_packages "${build_packages[@]}"
   cmake --preset release -DOCTAFRONT_BUILD_TESTS=OFF >/dev/null

@@ -2,7 +2,7 @@
 import pathlib
 import re
 
-from .process import finish, run_measured
+from bench.process import finish, run_measured
 
 
 def remesh(surface, folder, timeout, size, program):

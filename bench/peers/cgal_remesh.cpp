@@ -1,4 +1,4 @@
-// CGAL's isotropic remeshing for the comparison in bench/surface.py: cgal_remesh IN.stl SIZE OUT.off
+// CGAL's isotropic remeshing for the comparison in bench/run/surface.py: cgal_remesh IN.stl SIZE OUT.off
 // CGAL's remeshing is under the GPL: this program is built for the comparison only and is no part of the library.
 
 #include <cstdlib>

@@ -1,4 +1,4 @@
-"""Complexes of several regions: PLY files with the properties front and back, as scripts/make-complexes.sh makes them and
+"""Complexes of several regions: PLY files with the properties front and back, as bench/models/make-complexes.sh makes them and
 octafront surface writes them; and what TetGen reads.
 """
 import pathlib

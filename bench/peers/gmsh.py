@@ -2,8 +2,8 @@
 import pathlib
 import re
 
-from . import surfaces
-from .process import finish, run_measured
+from bench.peers import surfaces
+from bench.process import finish, run_measured
 
 SCRIPT = """Merge "in.msh";
 Surface Loop(1) = {{1}};

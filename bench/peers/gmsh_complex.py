@@ -1,6 +1,6 @@
 """Gmsh (Debian: python3-gmsh) on a complex of several regions. A program of its own, with Debian's Python:
 
-    python3 -m peers.gmsh_complex COMPLEX.ply OUT.mesh SIZE kept|anew ALGORITHM
+    python3 -m bench.peers.gmsh_complex COMPLEX.ply OUT.mesh SIZE kept|anew ALGORITHM
 
 Each pair of regions is a discrete surface, and each region a volume between them; sheets are embedded. For `anew` the
 surfaces are classified by angle and parametrised first, as in Gmsh's tutorial 13.
@@ -10,7 +10,7 @@ import sys
 
 import gmsh
 
-from .complexes import read_ply
+from bench.peers.complexes import read_ply
 
 ANGLE = math.radians(40)
 

@@ -1,6 +1,6 @@
 """Gmsh's boundary layers (Debian: python3-gmsh): a surface drawn out along its normals, the rest filled.
 
-    python3 -m peers.gmsh_layers IN.json
+    python3 -m bench.peers.gmsh_layers IN.json
 
 IN.json: surface (OFF), flat_ends, tops (heights of the tops of the layers, negative: inward), size, far, box (two corners, or null), out.
 A closed surface keeps its triangles, as a discrete surface. One that ends at planes (flat_ends) is divided and meshed anew to `size`, as in Gmsh's
@@ -13,7 +13,7 @@ import sys
 
 import gmsh
 
-from . import surfaces
+from bench.peers import surfaces
 
 FEATURE = math.radians(40)
 

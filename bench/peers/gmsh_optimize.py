@@ -1,11 +1,11 @@
-"""Gmsh's own optimiser on any mesh, through its library: python3 -m peers.gmsh_optimize IN.msh OUT.msh
+"""Gmsh's own optimiser on any mesh, through its library: python3 -m bench.peers.gmsh_optimize IN.msh OUT.msh
 
 The .geo command OptimizeMesh leaves meshes alone that have no geometry; the library can be told to take them.
 """
 import ctypes
 import sys
 
-from .process import load_library
+from bench.process import load_library
 
 LIBRARIES = ["libgmsh.so.4.8", "libgmsh.so.4.11", "libgmsh.so"]
 

@@ -1,6 +1,6 @@
 """Netgen (Debian: netgen), through its library: its front on a kept surface, and its STL mesher, which triangulates anew.
 
-As a program of its own, which these run:  python3 -m peers.netgen SURFACE.off|CAD MESH.mesh [SIZE [--vol] [--second-order]]
+As a program of its own, which these run:  python3 -m bench.peers.netgen SURFACE.off|CAD MESH.mesh [SIZE [--vol] [--second-order]]
 """
 import ctypes
 import pathlib
@@ -8,8 +8,10 @@ import re
 import resource
 import sys
 
-from . import surfaces
-from .process import finish, load_library, run_measured
+from bench.peers import surfaces
+from bench.process import finish, load_library, run_measured
+
+ROOT = pathlib.Path(__file__).resolve().parents[2]
 
 LIBRARIES = ["/usr/lib/x86_64-linux-gnu/netgen/libnglib.so.6.2", "libnglib.so"]
 
@@ -36,10 +38,9 @@ def mesh_cad_for_solver(file, folder, timeout, size, order):
 
 
 def run(surface, folder, timeout, *more):
-    bench = pathlib.Path(__file__).resolve().parent.parent
     out = pathlib.Path(folder).resolve() / "out.mesh"
-    outcome = run_measured([sys.executable, "-m", "peers.netgen", pathlib.Path(surface).resolve(), out,
-                            *more], bench, timeout)
+    outcome = run_measured([sys.executable, "-m", "bench.peers.netgen", pathlib.Path(surface).resolve(), out,
+                            *more], ROOT, timeout)
     stage = re.search(r"filling CPU seconds: ([\d.]+)", outcome.log)
     if stage:
         outcome.stage_seconds = float(stage[1])

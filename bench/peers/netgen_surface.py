@@ -1,9 +1,9 @@
-"""Netgen's STL mesher alone, without the volume: python3 -m peers.netgen_surface SURFACE.off OUT.off SIZE"""
+"""Netgen's STL mesher alone, without the volume: python3 -m bench.peers.netgen_surface SURFACE.off OUT.off SIZE"""
 import ctypes
 import sys
 
-from . import surfaces
-from .netgen import function, load, mesh_stl_surface, surface_triangles
+from bench.peers import surfaces
+from bench.peers.netgen import function, load, mesh_stl_surface, surface_triangles
 
 
 def main(surface, out, size):

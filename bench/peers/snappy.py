@@ -2,12 +2,9 @@
 import math
 import pathlib
 import shutil
-import sys
 
-from .process import run_measured
-
-sys.path.insert(0, str(pathlib.Path(__file__).resolve().parents[1]))
-from foam_mesh import new_case, write_dictionary  # noqa: E402
+from bench.judges.foam_mesh import new_case, write_dictionary
+from bench.process import run_measured
 
 BLOCK = """scale 1;
 vertices (({0} {1} {2}) ({3} {1} {2}) ({3} {4} {2}) ({0} {4} {2}) ({0} {1} {5}) ({3} {1} {5}) ({3} {4} {5}) ({0} {4} {5}));

@@ -3,8 +3,8 @@ import pathlib
 import re
 import shutil
 
-from . import complexes, surfaces
-from .process import finish, run_measured
+from bench.peers import complexes, surfaces
+from bench.process import finish, run_measured
 
 # TetGen fills up to the bound it is given: with this multiple of the regular tetrahedron's volume the number of
 # elements comes out near the one of a mesh of the surface's size.

@@ -1,6 +1,6 @@
 #!/usr/bin/python3
 """Mesh, solve, adapt, solve again: Poisson's equation on an L-shaped solid with FEniCSx (Debian: python3-dolfinx). Prints the
-error of the gradient beside the number of unknowns; --json: as bench/adapt.py reads it, --short: small meshes alone.
+error of the gradient beside the number of unknowns; --json: as bench/run/adapt.py reads it, --short: small meshes alone.
 """
 import json
 import sys

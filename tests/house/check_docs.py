@@ -7,8 +7,9 @@
 What holds:
 - docs/README.md links to every page of docs/.
 - Each page of docs/measured, and each part of others that a command wrote, says "Written by `COMMAND` (commit ..., date,
-  machine" as bench/origin.py does, or "Measured by" where the figures were put on the page by hand; the script that the
+  machine" as bench/pages/origin.py does, or "Measured by" where the figures were put on the page by hand; the script that the
   command begins with exists.
+- A page of docs/measured is one screen: at most 900 words. Rows are in CSV files of docs/measured/rows, and pages link to them.
 - Links, pictures and anchors of pages lead somewhere; so do paths in backticks that begin with a folder of the project.
 - Workflows and .ci/run call scripts that are there.
 """
@@ -20,6 +21,7 @@ from self_test import finds
 
 ORIGIN = re.compile(r"(?:Written|Measured) by `(?P<script>[^` ]+)[^`]*` \(commit [0-9a-f]{7}(?: with changes)?, \d{4}-\d\d-\d\d, \w[^)]*\)")
 WRITTEN = re.compile(r"(?:Written|Measured) by `(?:bench|scripts)/")
+MOST_WORDS = 900  # of a page of docs/measured; lines and bars of tables are none
 LINK = re.compile(r"\]\(([^)\s]+)\)")
 QUOTED = re.compile(r"`((?:bench|cli|cmake|docs|examples|include|licenses|python|samples|scripts|src|tests)/[\w./-]*)[^`]*`")
 SCRIPT = re.compile(r"\bscripts/[\w-]+\.\w+")
@@ -58,6 +60,20 @@ class Docs:
                 if not (self.root / origin["script"]).exists():
                     self.fault(page, f"there is no {origin['script']}")
 
+    def check_measured(self):
+        linked = set()
+        for page in self.pages:
+            text = page.read_text()
+            linked |= {(page.parent / link).resolve() for link in LINK.findall(text) if not re.match(r"\w+:", link)}
+            if page.parent.name != "measured":
+                continue
+            words = len(re.findall(r"\S*\w\S*", text))
+            if words > MOST_WORDS:
+                self.fault(page, f"has {words} words, {MOST_WORDS} are a screen: its rows belong to a CSV file (bench/pages/tables.py)")
+        for rows in sorted((self.root / "docs/measured").rglob("*.csv")):
+            if rows.resolve() not in linked:
+                self.fault(rows, "no page links to it")
+
     def check_link(self, page, link):
         file, _, anchor = link.partition("#")
         target = page.parent / file if file else page
@@ -86,6 +102,7 @@ class Docs:
     def check(self):
         self.check_index()
         self.check_origins()
+        self.check_measured()
         self.check_links()
         self.check_workflows()
         return self.faults
@@ -101,9 +118,12 @@ def self_test():
         "docs/a.png": "",
         "docs/use/use.md": "[good](../measured/good.md#figures)\n",
         "docs/use/lonely.md": "Written by `bench/run.sh it`.\n",
-        "docs/measured/good.md": "# Figures\n\nWritten by `bench/run.sh it --all` (commit 0123abc with changes, 2026-01-31, AMD EPYC), one thread.\n",
+        "docs/measured/good.md": "# Figures\n\nWritten by `bench/run.sh it --all` (commit 0123abc with changes, 2026-01-31, AMD EPYC), one thread: "
+                                 "[rows](rows/good.csv).\n" + "| - |" * 1000,
+        "docs/measured/rows/good.csv": "",
+        "docs/measured/rows/lost.csv": "",
         "docs/measured/bare.md": "Written by `bench/run.sh it`, commit 0123abc.\n",
-        "docs/measured/stray.md": "Measured by `bench/gone.sh` (commit 0123abc, 2026-01-31, AMD EPYC).\n",
+        "docs/measured/stray.md": "Measured by `bench/gone.sh` (commit 0123abc, 2026-01-31, AMD EPYC).\n" + "word " * 900,
         "bench/run.sh": "",
         ".github/workflows/tests.yml": "steps:\n  - run: scripts/gone.sh --all\n",
     }
@@ -117,6 +137,8 @@ def self_test():
         "docs/README.md: does not link to use/lonely.md",
         "docs/measured/bare.md: does not say which command wrote it, at which commit, when, on which machine",
         "docs/measured/stray.md: there is no bench/gone.sh",
+        "docs/measured/stray.md: has 908 words, 900 are a screen: its rows belong to a CSV file (bench/pages/tables.py)",
+        "docs/measured/rows/lost.csv: no page links to it",
         "docs/measured/stray.md: names bench/gone.sh, which is not there",
     ]
     return finds(Docs, files, expected)

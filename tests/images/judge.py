@@ -1,5 +1,5 @@
 #!/usr/bin/env python3
-"""What other readers make of the volumes that scripts/get-volumes.sh --readers fetched: nibabel of NIfTI, pydicom of DICOM.
+"""What other readers make of the volumes that bench/models/get-volumes.sh --readers fetched: nibabel of NIfTI, pydicom of DICOM.
 
     judge.py OCTAFRONT VOLUMES_DIR
 
@@ -72,7 +72,7 @@ def judge_dicom(octafront, path, pydicom, numpy):
 def main(octafront, volumes):
     volumes = pathlib.Path(volumes)
     if not (volumes / "nibabel").is_dir():
-        print("scripts/get-volumes.sh --readers fetches the volumes")
+        print("bench/models/get-volumes.sh --readers fetches the volumes")
         return SKIPPED
     try:
         import nibabel

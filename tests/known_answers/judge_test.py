@@ -8,12 +8,11 @@ import sys
 import tempfile
 
 ROOT = pathlib.Path(__file__).resolve().parents[2]
-sys.path.insert(0, str(ROOT / "bench"))
-import known_answers  # noqa: E402
+sys.path.insert(0, str(ROOT))
 import numpy as np  # noqa: E402
-import damages  # noqa: E402
-import solids  # noqa: E402
-from solids import Solid  # noqa: E402
+from bench.models import damages, solids  # noqa: E402
+from bench.models.solids import Solid  # noqa: E402
+from bench.run import known_answers  # noqa: E402
 
 BUILD = pathlib.Path(sys.argv[1])
 FOLDER = tempfile.TemporaryDirectory()

@@ -40,7 +40,7 @@ def main(octafront, models, *options):
     # Where only robustness counts, a coarse mesh is enough.
     jobs += [(m, "--elements", "20000", "--repair", "none") for m in sorted(models.glob("dirty/*")) if not slow]
     if not jobs:
-        print(f"no models in {models}: run scripts/get-models.sh to fetch them")
+        print(f"no models in {models}: run bench/models/get-models.sh to fetch them")
         return SKIPPED
     failures = 0
     with concurrent.futures.ThreadPoolExecutor(os.cpu_count()) as pool:

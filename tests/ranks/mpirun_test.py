@@ -97,7 +97,7 @@ class Mpirun(unittest.TestCase):
     def test_one_mesh_of_the_bunny(self):
         bunny = SAMPLES.parent / "models" / "clean" / "bunny00.off"
         if not bunny.exists():
-            self.skipTest("scripts/get-models.sh fetches it")
+            self.skipTest("bench/models/get-models.sh fetches it")
         self.one_mesh(bunny, ["--elements", "30000"], (1, 2, 3))
 
     def test_long_messages_go_in_parts(self):

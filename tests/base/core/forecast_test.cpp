@@ -1,6 +1,6 @@
-// What several threads would make of a run, as bench/threads.py measures it.
+// What several threads would make of a run, as bench/run/threads.py measures it.
 
-#include "../../../bench/forecast.h"
+#include "../../../bench/run/forecast.h"
 
 #include <stdexcept>
 

@@ -1,4 +1,4 @@
-// One line of a table per CAD file: what octafront-cad makes of it. Run by scripts/cad-campaign.sh.
+// One line of a table per CAD file: what octafront-cad makes of it. Run by bench/campaigns/cad-campaign.sh.
 //   cad_survey DEFLECTION ANGLE SECONDS FILE ...       DEFLECTION: of the diagonal of each file
 #include <octafront/vec.h>
 

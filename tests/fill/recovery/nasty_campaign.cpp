@@ -1,5 +1,5 @@
 // Meshes random nasty surfaces, each by recover_volume() and by generate() with the surface kept, and checks the
-// results. Not a unit test: scripts/nasty.sh runs it over as many seeds as wanted.
+// results. Not a unit test: bench/campaigns/nasty.sh runs it over as many seeds as wanted.
 
 #include <octafront/error.h>
 #include <octafront/generate.h>

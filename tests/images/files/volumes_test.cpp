@@ -1,4 +1,4 @@
-// Real volumes, where scripts/get-volumes.sh has fetched them; skipped with a message where not.
+// Real volumes, where bench/models/get-volumes.sh has fetched them; skipped with a message where not.
 
 #include <octafront/image.h>
 
@@ -26,7 +26,7 @@ std::string volume(const std::string& name) {
 class Volumes : public ::testing::Test {
  protected:
   void SetUp() override {
-    if (!fs::exists(volume("Cranium.nrrd"))) GTEST_SKIP() << "scripts/get-volumes.sh fetches the volumes";
+    if (!fs::exists(volume("Cranium.nrrd"))) GTEST_SKIP() << "bench/models/get-volumes.sh fetches the volumes";
     folder_ = fs::temp_directory_path() / fmt::format("octafront-volumes-{}", ::getpid());
     fs::create_directories(folder_);
   }

@@ -1,5 +1,5 @@
 // Files of images, damaged by what happens to files and by what readers must not trust: every one ends, with a sound
-// image, whose surface is made if it is small, or with a reason. scripts/mutated-images.sh runs more of them.
+// image, whose surface is made if it is small, or with a reason. bench/campaigns/mutated-images.sh runs more of them.
 
 #include <octafront/image_surface.h>
 

@@ -1,5 +1,5 @@
 // Random complexes with known volumes, meshed with their triangles kept and triangulated anew. Not a unit test:
-// scripts/complex-campaign.sh runs it over as many seeds as wanted.
+// bench/campaigns/complex-campaign.sh runs it over as many seeds as wanted.
 
 #include <octafront/generate.h>
 #include <octafront/validity.h>

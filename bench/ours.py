@@ -1,0 +1,38 @@
+"""Octafront as a program: run in a process of its own, its report read, its meshes judged by octafront_evaluate."""
+import json
+import pathlib
+
+from bench.process import finish, run_measured
+
+
+def mesh(program, source, folder, timeout, *options, out="out.vtu", threads=1):
+    """An Outcome with the mesh, FOLDER/OUT, and the report. `source`: a file as seen from here, or a formula."""
+    made, report = (pathlib.Path(folder).resolve() / name for name in (out, "report.json"))
+    report.unlink(missing_ok=True)
+    outcome = run_measured([program, "mesh", source, "-o", made, "--json", report, "--threads", threads, "-q", *options], ".", timeout)
+    if not outcome.error:
+        outcome.report = json.loads(report.read_text())
+    return finish(outcome, made)
+
+
+def evaluated(build, file, *more, timeout=600):
+    """What octafront_evaluate says of a mesh, or in words why it cannot read it: (figures or None, words)."""
+    done = run_measured([build / "bench/octafront_evaluate", file, *more], ".", timeout)
+    return (None, done.log.strip()[:120] or done.error) if done.error else (json.loads(done.log), "")
+
+
+def stage(report, name):
+    return next(s for s in report["stages"] if s["name"] == name)
+
+
+def stages(report, *names):
+    """Those whose names begin so: tries that were not kept stand by themselves."""
+    return [s for s in report["stages"] if s["name"].startswith(names)]
+
+
+def cpu_seconds(report, *names):
+    return sum(s["cpu_seconds"] for s in stages(report, *names))
+
+
+def counter(report, name, key):
+    return next((s["counters"][key] for s in report["stages"] if s["name"] == name and key in s["counters"]), 0)

@@ -1,0 +1,34 @@
+"""Speed of the writers of meshes: bench/run.sh formats [MILLIONS]. Linear meshes in every format, binary ones of second order
+too. Writes docs/measured/formats-bench.md."""
+import pathlib
+import subprocess
+import sys
+import tempfile
+
+from bench.pages import tables
+from bench.pages.origin import written_by
+
+SECOND = ["vtu", "vtk", "msh", "med", "xdmf", "exodus", "abaqus"]
+
+
+def shown(first, second):
+    """What octafront_write_formats prints of meshes of both orders."""
+    lines = []
+    for title, name, text in (("Linear", "formats", first), ("Second order", "formats-second-order", second)):
+        (head, rows), = tables.parsed(text)
+        lines += [f"## {title}", "", text.splitlines()[0], "", *tables.table(head, rows), "", f"As a file: {tables.put(name, head, rows)}.", ""]
+    return lines
+
+
+def main():
+    build, millions = pathlib.Path(sys.argv[1]), sys.argv[2] if len(sys.argv) > 2 else "10"
+    with tempfile.TemporaryDirectory(dir=build) as folder:
+        told = [subprocess.run([build / "bench/octafront_write_formats", size, folder, order, *formats], check=True, text=True, stdout=subprocess.PIPE).stdout
+                for size, order, formats in ((millions, "1", []), (str(float(millions) / 4), "2", SECOND))]
+    tables.write("formats-bench", ["# How fast meshes are written", "", f"""{written_by(f'bench/run.sh formats {millions}')}: a bent box of two regions and six patches; each format beside a plain write
+of as many bytes to the same disk ("of a plain write": its share of that speed), flushed to the disk both. Memory is the highest of the process so far, the
+mesh included. VTU is compressed: its megabytes are a fifth of what the others write.""", "", *shown(*told)])
+
+
+if __name__ == "__main__":
+    main()
