@@ -402,11 +402,15 @@ FAMILIES = {f.__name__: f for f in (
     star_pyramid, tube, ring, lens, spindle, crater, eccentric_hole, notched, slivers, stairs, hedgehog, fan_of_blades, near_blocks)}
 
 
-def make(number, seed=0):
-    """(family, Solid) of this number: seed and number say everything."""
-    name = list(FAMILIES)[number % len(FAMILIES)]
+def drawn(families, number, seed):
+    """(family, Solid, what it was drawn with) of this number: seed and number say everything."""
+    name = list(families)[number % len(families)]
     rng = random.Random(f"{seed} {number} {name}")
-    solid = FAMILIES[name](rng)
+    solid = families[name](rng)
     if rng.random() < 0.5:
         solid = rotated(solid, rng)
-    return name, solid
+    return name, solid, rng
+
+
+def make(number, seed=0):
+    return drawn(FAMILIES, number, seed)[:2]

@@ -4,9 +4,8 @@ Like `nasty_solids.py`, whose Solid and building blocks these use: closed, outwa
 """
 import itertools
 import math
-import random
 
-from bench.models.nasty_solids import log_between, moved, prism, rotated, scaled, Solid, sphere, star_ring, together, turned, turned_inside_out
+from bench.models.nasty_solids import Solid, drawn, log_between, moved, prism, scaled, sphere, star_ring, together, turned, turned_inside_out
 
 # ------------------------------------------------------------------------------------------------- building blocks
 
@@ -290,10 +289,5 @@ FAMILIES = {f.__name__: f for f in (
 
 
 def make(number, seed=0):
-    """(family, Solid) of this number: seed and number say everything."""
-    name = list(FAMILIES)[number % len(FAMILIES)]
-    rng = random.Random(f"{seed} {number} {name}")
-    solid = FAMILIES[name](rng)
-    if rng.random() < 0.5:
-        solid = rotated(solid, rng)
+    name, solid, rng = drawn(FAMILIES, number, seed)
     return name, scaled(solid, [log_between(rng, 1e-3, 1e6)] * 3)
