@@ -2,7 +2,7 @@
 #include <octafront/io.h>
 
 #include "formats/read/readers.h"
-#include "formats/table/recognize.h"
+#include "formats/table/formats.h"
 
 #include <algorithm>
 #include <array>
@@ -21,28 +21,16 @@ bool is_table(const std::string& file) {
   return std::find(kEndings.begin(), kEndings.end(), ending) != kEndings.end();
 }
 
-LinesFile lines_of_mesh(const io::Input& input) {
-  io::RawMesh raw = io::read_raw_mesh(input);
-  return {std::move(raw.points), std::move(raw.edges), std::move(raw.format), std::move(raw.notes)};
-}
-
 LinesFile lines_of(const io::Input& input) {
   if (is_table(input.name)) return io::read_line_table(input);
-  switch (io::recognize_surface(input)) {
-    case io::SurfaceKind::kObj:
-      return io::read_obj_lines(input);
-    case io::SurfaceKind::kPly:
-      return io::read_ply_lines(input);
-    case io::SurfaceKind::kMsh:
-    case io::SurfaceKind::kMedit:
-    case io::SurfaceKind::kMeditBinary:
-    case io::SurfaceKind::kOtherMesh:
-      return lines_of_mesh(input);
-    default:
-      input.fail(
-          "holds no lines or points: give OBJ, PLY, VTK, MSH or another mesh, or a text with a point in each line, "
-          "as .txt or .csv");
-  }
+  const io::Format& format = io::recognize_surface(input);
+  if (format.read_lines != nullptr) return format.read_lines(input);
+  if (format.read_mesh == nullptr)
+    input.fail(
+        "holds no lines or points: give OBJ, PLY, VTK, MSH or another mesh, or a text with a point in each line, "
+        "as .txt or .csv");
+  io::RawMesh raw = format.read_mesh(input);
+  return {std::move(raw.points), std::move(raw.edges), std::move(raw.format), std::move(raw.notes)};
 }
 
 }  // namespace

@@ -3,15 +3,12 @@
 #include <octafront/io.h>
 
 #include "base/core/thread_limit.h"
-#include "base/core/utf8.h"
 #include "base/mesh/renumber.h"
 #include "formats/parts/mixed_cells.h"
 #include "formats/parts/raw_mesh.h"
 #include "formats/pieces/division.h"
 #include "formats/pieces/pieces.h"
-#include "formats/read/readers.h"
 #include "formats/table/formats.h"
-#include "formats/table/recognize.h"
 
 #include <algorithm>
 #include <utility>
@@ -19,57 +16,6 @@
 #include <fmt/core.h>
 
 namespace octafront {
-
-namespace io {
-
-RawMesh read_raw_mesh(const Input& input) {
-  switch (recognize_mesh(input)) {
-    case MeshKind::kVtu:
-      return read_vtu(input);
-    case MeshKind::kVtk:
-      return read_vtk(input);
-    case MeshKind::kMsh:
-      return read_msh(input);
-    case MeshKind::kMeditBinary:
-      return read_medit_binary(input);
-    case MeshKind::kAbaqus:
-      return read_abaqus(input);
-    case MeshKind::kNastran:
-      return read_nastran(input);
-    case MeshKind::kUnv:
-      return read_unv(input);
-    case MeshKind::kNetgen:
-      return read_netgen(input);
-    case MeshKind::kTetgen:
-      return read_tetgen(input);
-    case MeshKind::kXdmf:
-      return read_xdmf(input);
-    case MeshKind::kHdf5:
-      return read_med(input);
-    default:
-      return read_medit(input);
-  }
-}
-
-namespace {
-
-TetMesh with_clean_names(TetMesh mesh, std::vector<std::string>& notes) {
-  NameCleaning names;
-  for (auto* list : {&mesh.region_names, &mesh.patch_names, &mesh.curve_names}) names.clean(*list);
-  for (NamedSet& set : mesh.sets) names.clean(set.name);
-  names.tell(notes);
-  return mesh;
-}
-
-}  // namespace
-
-MeshFile read_mesh_bytes(const Input& input) {
-  MeshFile file = ordered_mesh(read_raw_mesh(input), input);
-  file.mesh = with_clean_names(std::move(file.mesh), file.notes);
-  return file;
-}
-
-}  // namespace io
 
 namespace {
 

@@ -1,57 +1,11 @@
 #include <octafront/error.h>
 #include <octafront/io.h>
 
-#include "base/core/utf8.h"
-#include "formats/read/readers.h"
 #include "formats/table/formats.h"
-#include "formats/table/recognize.h"
 
 #include <fmt/core.h>
 
 namespace octafront {
-
-namespace io {
-
-namespace {
-
-SurfaceFile as_in_file(const Input& input) {
-  switch (recognize_surface(input)) {
-    case SurfaceKind::kBinaryStl:
-      return read_binary_stl(input);
-    case SurfaceKind::kAsciiStl:
-      return read_ascii_stl(input);
-    case SurfaceKind::kObj:
-      return read_obj(input);
-    case SurfaceKind::kOff:
-      return read_off(input);
-    case SurfaceKind::kPoly:
-      return read_poly(input);
-    case SurfaceKind::kMsh:
-      return surface_of(read_msh(input), input);
-    case SurfaceKind::kMedit:
-      return surface_of(read_medit(input), input);
-    case SurfaceKind::kMeditBinary:
-      return surface_of(read_medit_binary(input), input);
-    case SurfaceKind::kOtherMesh:
-      return surface_of(read_raw_mesh(input), input);
-    default:
-      return read_ply(input);
-  }
-}
-
-}  // namespace
-
-SurfaceFile read_surface_bytes(const Input& input) {
-  SurfaceFile file = as_in_file(input);
-  NameCleaning names;
-  names.clean(file.surface.patch_names);
-  names.clean(file.surface.region_names);
-  for (RegionSeed& seed : file.regions) names.clean(seed.name);
-  names.tell(file.notes);
-  return file;
-}
-
-}  // namespace io
 
 namespace {
 
@@ -72,21 +26,9 @@ SurfaceFile read_surface(const std::string& file, const RunContext& context) {
 bool holds_tetrahedra(const std::string& file, const RunContext& context) {
   const io::LoadedFile loaded(file, context);
   const io::Input& input = loaded.input();
-  switch (io::recognize_mesh(input)) {
-    case io::MeshKind::kMsh:
-      return !io::read_msh(input).tets.empty();
-    case io::MeshKind::kMedit:
-      return !io::read_medit(input).tets.empty();
-    case io::MeshKind::kMeditBinary:
-      return !io::read_medit_binary(input).tets.empty();
-    case io::MeshKind::kVtu:
-      return !io::read_vtu(input).tets.empty();
-    case io::MeshKind::kVtk:
-      return !io::read_vtk(input).tets.empty();
-    default:
-      // Of the other formats only meshes are read.
-      return true;
-  }
+  const io::Format& format = io::recognize_mesh(input);
+  // Of the other formats only meshes are read.
+  return !format.info.holds.surfaces_alone || !format.read_mesh(input).tets.empty();
 }
 
 void check_surface_target(const std::string& file) {

@@ -101,4 +101,10 @@ void MshStream::fail(std::string_view message) const {
   input_.fail_at_line(scan_.position(), message);
 }
 
+void MshStream::skip_line_end() {
+  if (!is_binary()) return;
+  text().skip_line();
+  text().set_position(position() + std::min<std::size_t>(1, text().bytes_left()));
+}
+
 }  // namespace octafront::io

@@ -5,6 +5,7 @@
 #include "formats/containers/input.h"
 #include "formats/containers/scanner.h"
 
+#include <algorithm>
 #include <array>
 #include <cstdint>
 #include <string_view>
@@ -14,6 +15,10 @@ namespace octafront::io {
 /// What Gmsh's physical groups of dimension 0 to 3 hold.
 inline constexpr std::array<NamedSet::Kind, 4> kKindOfDimension{NamedSet::Kind::kNodes, NamedSet::Kind::kEdges,
                                                                 NamedSet::Kind::kFaces, NamedSet::Kind::kElements};
+inline std::size_t dimension_of(NamedSet::Kind kind) {
+  return static_cast<std::size_t>(std::find(kKindOfDimension.begin(), kKindOfDimension.end(), kind) -
+                                  kKindOfDimension.begin());
+}
 
 /// The values of a Gmsh file, in text or little-endian binary, and its sections "$Name ... $EndName".
 class MshStream {
@@ -22,6 +27,8 @@ class MshStream {
 
   /// Names of sections and numbers in headers are text in either case.
   Scanner& text() { return scan_; }
+  /// Some counts stand in a line of text also in binary files.
+  void skip_line_end();
   void set_binary() { binary_ = true; }
   bool is_binary() const { return binary_; }
 

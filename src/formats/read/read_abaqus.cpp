@@ -385,6 +385,11 @@ class Abaqus {
 
 }  // namespace
 
+Told told_abaqus(const FileHead& head) {
+  const bool is_ls_dyna = head.input.bytes.starts_with("*KEYWORD");
+  return head.first.starts_with('*') && head.first.size() > 1 && !is_ls_dyna ? Told::kFirstLetter : Told::kNot;
+}
+
 RawMesh read_abaqus(const Input& input) {
   return Abaqus(input).read();
 }

@@ -22,6 +22,8 @@
 namespace octafront::io {
 namespace {
 
+using namespace std::string_view_literals;
+
 bool is_keyword(std::string_view word) {
   return !word.empty() && ((word[0] >= 'A' && word[0] <= 'Z') || (word[0] >= 'a' && word[0] <= 'z'));
 }
@@ -328,7 +330,23 @@ class MeditBinary {
   MeditSections file_;
 };
 
+bool is_binary_medit(std::string_view bytes) {
+  // In either byte order: 1, and the version.
+  constexpr std::string_view kOne("\x01\0\0\0"sv), kSwapped("\0\0\0\x01\0\0\0"sv);
+  if (bytes.size() <= 8) return false;
+  return (bytes.starts_with(kOne) && bytes[4] >= 1 && bytes[4] <= 4) ||
+         (bytes.starts_with(kSwapped) && bytes[7] >= 1 && bytes[7] <= 4);
+}
+
 }  // namespace
+
+Told told_medit(const FileHead& head) {
+  return head.first.starts_with("MeshVersionFormatted") ? Told::kMagic : Told::kNot;
+}
+
+Told told_medit_binary(const FileHead& head) {
+  return is_binary_medit(head.input.bytes) ? Told::kMagic : Told::kNot;
+}
 
 RawMesh read_medit(const Input& input) {
   return MeditText(input).read();

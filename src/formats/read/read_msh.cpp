@@ -125,183 +125,9 @@ class NodeTags {
   bool consecutive_ = true;
 };
 
-class Msh {
+/// Where elements belong, and the physical groups that it comes to.
+class MshPlaces {
  public:
-  explicit Msh(const Input& input) : input_(input), in_(input) {}
-
-  RawMesh read() {
-    for (std::string_view name = in_.next_section(); !name.empty(); name = in_.next_section()) {
-      if (name == "MeshFormat") {
-        read_format();
-      } else if (name == "PhysicalNames") {
-        read_names();
-      } else if (name == "PartitionedEntities" && version_ == 4) {
-        read_partitioned_entities();
-      } else if (name == "Entities" && version_ == 4) {
-        read_entities();
-      } else if (name == "Nodes") {
-        require_format();
-        version_ == 4 ? read_nodes_4() : read_nodes_2();
-        if (const auto [twice, tag] = tags_.finish(); twice)
-          in_.fail(fmt::format("two nodes have the tag {}; the file is damaged: export it again", tag));
-      } else if (name == "Elements") {
-        require_format();
-        has_elements_ = true;
-        version_ == 4 ? read_elements_4() : read_elements_2();
-      } else if (name == "Periodic" && !tags_.empty()) {
-        version_ == 4 ? read_periodic_4() : read_periodic_2();
-      } else if (input_.field != nullptr && (name == "NodeData" || name == "ElementData")) {
-        read_data(name == "NodeData");
-      } else {
-        in_.skip_section(name);
-        continue;
-      }
-      in_.end_section(name);
-    }
-    if (!has_elements_)
-      input_.fail("has no section $Elements; it is truncated or holds no mesh: copy or export it again");
-    unite_equal_elements();
-    finish_groups();
-    finish_field();
-    sort_by_tags();
-    if (high_order_ > 0)
-      raw_.notes.push_back(fmt::format("{} elements of order 3 and more are taken as linear", high_order_));
-    raw_.format = version_ == 4 ? "Gmsh MSH 4.1" : "Gmsh MSH 2.2";
-    return std::move(raw_);
-  }
-
- private:
-  void require_format() const {
-    if (version_ == 0) in_.fail("the section $MeshFormat must come first; the file is damaged: export it again");
-  }
-
-  void read_format() {
-    const double version = in_.text().number("the version of the format");
-    const std::int64_t type = in_.text().integer("the type of the file (0 or 1)");
-    const std::int64_t size = in_.text().integer("the size of a number");
-    if (version != 4.1 && !(version >= 2 && version < 3))
-      in_.fail(fmt::format(
-          "version {} of Gmsh's format is not read here; save it as 4.1 (gmsh FILE -save -format msh41)", version));
-    if (size != 8) in_.fail(fmt::format("numbers of {} bytes are not read here; save it on a 64-bit machine", size));
-    version_ = version == 4.1 ? 4 : 2;
-    if (type == 0) return;
-    in_.text().skip_line();
-    in_.text().set_position(in_.position() + std::min<std::size_t>(1, in_.text().bytes_left()));
-    in_.set_binary();
-    if (in_.int32("the mark of the byte order") != 1)
-      in_.fail("big-endian files are not read here; save it on a little-endian machine or as text");
-  }
-
-  void read_names() {
-    Scanner& text = in_.text();
-    const std::int64_t count = text.integer("the number of names");
-    for (std::int64_t i = 0; i < count; ++i) {
-      const std::int64_t dimension = text.integer("the dimension of a physical group");
-      const std::int64_t tag = text.integer("the tag of a physical group");
-      std::string_view name = text.rest_of_line();
-      // Some programs put words of their own behind the name.
-      const std::size_t last = name.rfind('"');
-      if (last == 0 || last == std::string_view::npos || name.front() != '"') text.fail_expected("a name in quotes");
-      name = name.substr(1, last - 1);
-      if (dimension >= 0 && dimension < 4) names_[{static_cast<int>(dimension), tag}] = name;
-    }
-  }
-
-  /// What parts have of entities is named by them, too.
-  void read_partitioned_entities() {
-    in_.size("the number of partitions");
-    const std::uint64_t ghosts = in_.size("the number of ghost entities");
-    in_.check_count(ghosts, 0, 0, 2, "ghost entities");
-    in_.skip_int32(2 * ghosts);
-    read_entities(true);
-  }
-
-  void read_entities(bool of_parts = false) {
-    std::array<std::uint64_t, 4> counts;
-    for (std::uint64_t& n : counts) n = in_.size("a number of entities");
-    for (int dimension = 0; dimension < 4; ++dimension) {
-      const std::uint64_t reals = dimension == 0 ? 3 : 6;
-      in_.check_count(counts[static_cast<std::size_t>(dimension)], reals, dimension == 0 ? 1 : 2, 1, "entities");
-      for (std::uint64_t i = 0; i < counts[static_cast<std::size_t>(dimension)]; ++i) {
-        const std::int64_t tag = in_.int32("the tag of an entity");
-        if (of_parts) {
-          const std::int64_t parent_dimension = in_.int32("the dimension of a parent");
-          const std::int64_t parent = in_.int32("the tag of a parent");
-          if (parent_dimension == dimension) parent_[{dimension, tag}] = parent;
-          const std::uint64_t partitions = in_.size("the number of partitions of an entity");
-          in_.check_count(partitions, 0, 0, 1, "partitions");
-          in_.skip_int32(partitions);
-        }
-        in_.skip_real(reals);
-        const std::uint64_t groups = in_.size("the number of physical groups");
-        if (groups > 0) {
-          in_.check_count(groups, 0, 0, 1, "physical groups");
-          std::vector<std::int64_t>& of_entity = physical_[{dimension, tag}];
-          // The sign tells the orientation of the entity in its group.
-          for (std::uint64_t g = 0; g < groups; ++g) of_entity.push_back(std::abs(in_.int32("a physical group")));
-        }
-        if (dimension > 0) in_.skip_int32(in_.size("the number of bounding entities"));
-      }
-    }
-  }
-
-  void add_node(std::uint64_t tag) {
-    if (raw_.points.size() >= kNone - 1) in_.fail(fmt::format("holds more than {} nodes", kNone - 1));
-    tags_.add(tag);
-  }
-
-  Vec3 point() {
-    const double x = in_.real("a coordinate"), y = in_.real("a coordinate"), z = in_.real("a coordinate");
-    return {x, y, z};
-  }
-
-  void read_nodes_4() {
-    const std::uint64_t blocks = in_.size("the number of blocks of nodes");
-    in_.skip_size(3);
-    for (std::uint64_t b = 0; b < blocks; ++b) {
-      const std::int64_t dimension = in_.int32("the dimension of an entity");
-      in_.skip_int32(1);
-      const bool parametric = in_.int32("whether nodes have parameters") != 0;
-      const std::uint64_t count = in_.size("the number of nodes");
-      if (dimension < 0 || dimension > 3)
-        in_.fail(fmt::format("an entity of dimension {}; the file is damaged", dimension));
-      const std::uint64_t parameters = parametric ? static_cast<std::uint64_t>(dimension) : 0;
-      in_.check_count(count, 3 + parameters, 1, 0, "nodes");
-      for (std::uint64_t i = 0; i < count; ++i) add_node(in_.size("the tag of a node"));
-      for (std::uint64_t i = 0; i < count; ++i) {
-        raw_.points.push_back(point());
-        in_.skip_real(parameters);
-      }
-    }
-  }
-
-  void read_nodes_2() {
-    const std::uint64_t count = static_cast<std::uint64_t>(in_.text().integer("the number of nodes"));
-    skip_line_end();
-    in_.check_count(count, 3, 0, 1, "nodes");
-    for (std::uint64_t i = 0; i < count; ++i) {
-      add_node(static_cast<std::uint64_t>(in_.int32("the tag of a node")));
-      raw_.points.push_back(point());
-    }
-  }
-
-  /// Counts stand in a line of text also in binary files of version 2.
-  void skip_line_end() {
-    if (!in_.is_binary()) return;
-    in_.text().skip_line();
-    in_.text().set_position(in_.position() + std::min<std::size_t>(1, in_.text().bytes_left()));
-  }
-
-  VertexIndex node(std::uint64_t tag) const {
-    const VertexIndex v = tags_.index_of(tag);
-    if (v == kNone)
-      in_.fail(tags_.empty() ? "the elements come before the nodes, which is not read here; export it again"
-                             : fmt::format("an element has the node {}, which the file lacks; the file is damaged: "
-                                           "export it again",
-                                           tag));
-    return v;
-  }
-
   /// An entity, or what of it is in the same groups: all that elements know of where they belong.
   struct Place {
     std::int64_t entity;
@@ -316,98 +142,21 @@ class Msh {
     return static_cast<std::int64_t>(places.try_emplace(std::move(place), places.size()).first->second);
   }
 
-  /// An element of a kept type.
-  template <class Tag>
-  void add_element(std::int64_t type, std::uint64_t tag, std::int64_t ref, std::span<const std::int64_t> groups,
-                   const Tag& next_tag) {
-    std::array<VertexIndex, 128> nodes;
-    std::array<VertexIndex, 15> ours;
-    const std::size_t count = nodes_of_type(type);
-    for (std::size_t i = 0; i < count; ++i) nodes[i] = node(next_tag());
-    const std::span<const VertexIndex> all = std::span(nodes).first(kept_nodes(type));
-    high_order_ += is_of_high_order(type);
-    const int dimension = kept_dimension(type);
-    const auto d = static_cast<std::size_t>(dimension);
-    std::uint32_t index = nodes[0], parts = 1;
-    if (dimension == 3) {
-      index = static_cast<std::uint32_t>(raw_.tets.size());
-      if (all.size() == 4 || all.size() == 10)
-        raw_.add_tet(all, ref, kGmshMids);
-      else if (type == 5 || type == 12 || type == 17)
-        parts = raw_.add_hexahedron(all, ref, tags_.tags());
-      else
-        parts = raw_.add_wide_cell(in_our_order(all, kGmshWide, ours), ref, tags_.tags());
-    } else if (dimension == 2) {
-      index = static_cast<std::uint32_t>(raw_.triangles.size());
-      parts = raw_.add_face(all, ref);
-    } else if (dimension == 1) {
-      index = static_cast<std::uint32_t>(raw_.edges.size());
-      raw_.edges.push_back({nodes[0], nodes[1]});
-      raw_.edge_ref.push_back(ref);
-    }
-    if (dimension > 0) return static_cast<void>(element_tags_[d].insert(element_tags_[d].end(), parts, tag));
-    for (const std::int64_t group : groups) node_groups_[group].push_back(index);
-  }
+  void name(int dimension, std::int64_t group, std::string_view name) { names_[{dimension, group}] = name; }
+  void add_node(std::int64_t group, std::uint32_t node) { node_groups_[group].push_back(node); }
 
-  std::string name_of(int dimension, std::int64_t group) const {
-    const auto name = names_.find({dimension, group});
-    return name != names_.end() ? name->second : fmt::format("physical_{}", group);
-  }
-
-  void finish_groups() {
+  /// Names, references and sets of all.
+  void finish(RawMesh& raw) {
     for (const auto& [key, name] : names_) {
-      if (key.first == 1) raw_.curve_names[key.second] = name;
-      if (key.first == 2) raw_.surface_names[key.second] = name;
-      if (key.first == 3) raw_.region_names[key.second] = name;
+      if (key.first == 1) raw.curve_names[key.second] = name;
+      if (key.first == 2) raw.surface_names[key.second] = name;
+      if (key.first == 3) raw.region_names[key.second] = name;
     }
     for (auto& [tag, members] : node_groups_)
-      raw_.groups.push_back({name_of(0, tag), NamedSet::Kind::kNodes, std::move(members)});
-    finish_groups(1, raw_.edge_ref);
-    finish_groups(2, raw_.triangle_ref);
-    finish_groups(3, raw_.tet_ref);
-  }
-
-  /// Physical groups of a dimension that overlap none of a lower tag.
-  std::set<std::int64_t> groups_apart(int dimension) const {
-    std::set<std::int64_t> all, apart;
-    const auto& places = places_[static_cast<std::size_t>(dimension)];
-    for (const auto& [place, number] : places) all.insert(place.groups.begin(), place.groups.end());
-    for (const std::int64_t group : all) {
-      const auto overlaps = [&](const auto& entry) {
-        const auto& groups = entry.first.groups;
-        return std::binary_search(groups.begin(), groups.end(), group) &&
-               std::any_of(groups.begin(), groups.end(), [&](std::int64_t g) { return apart.contains(g); });
-      };
-      if (std::none_of(places.begin(), places.end(), overlaps)) apart.insert(group);
-    }
-    return apart;
-  }
-
-  /// References and sets of what the places of elements are.
-  void finish_groups(int dimension, std::vector<std::int64_t>& refs) {
-    const auto& places = places_[static_cast<std::size_t>(dimension)];
-    const std::set<std::int64_t> apart = groups_apart(dimension);
-    std::set<std::int64_t> taken = apart;
-    for (const auto& [place, number] : places) taken.insert(place.groups.begin(), place.groups.end());
-    std::int64_t free = taken.empty() ? 1 : *taken.rbegin() + 1;
-    for (const auto& [place, number] : places) free = std::max(free, place.entity + 1);
-    std::vector<std::int64_t> ref_of(places.size());
-    std::vector<std::vector<std::int64_t>> sets_of(places.size());
-    for (const auto& [place, number] : places) {
-      std::int64_t& ref = ref_of[number] = kNone;
-      for (const std::int64_t group : place.groups)
-        apart.contains(group) ? static_cast<void>(ref = group) : sets_of[number].push_back(group);
-      if (ref == kNone) ref = taken.insert(place.entity).second ? place.entity : free++;
-    }
-    std::map<std::int64_t, std::vector<std::uint32_t>> sets;
-    for (std::uint32_t i = 0; i < refs.size(); ++i) {
-      const auto number = static_cast<std::size_t>(refs[i]);
-      for (const std::int64_t group : sets_of[number]) sets[group].push_back(i);
-      refs[i] = ref_of[number];
-    }
-    for (auto& [tag, members] : sets)
-      raw_.groups.push_back(
-          {name_of(dimension, tag), kKindOfDimension[static_cast<std::size_t>(dimension)], std::move(members)});
+      raw.groups.push_back({name_of(0, tag), NamedSet::Kind::kNodes, std::move(members)});
+    finish(1, raw.edge_ref, raw);
+    finish(2, raw.triangle_ref, raw);
+    finish(3, raw.tet_ref, raw);
   }
 
   /// Version 2 lists the elements of an entity once for each of its groups: equal ones are in all of them. Returns for
@@ -446,10 +195,413 @@ class Msh {
     return first;
   }
 
+ private:
+  std::string name_of(int dimension, std::int64_t group) const {
+    const auto name = names_.find({dimension, group});
+    return name != names_.end() ? name->second : fmt::format("physical_{}", group);
+  }
+
+  /// Physical groups of a dimension that overlap none of a lower tag.
+  std::set<std::int64_t> groups_apart(int dimension) const {
+    std::set<std::int64_t> all, apart;
+    const auto& places = places_[static_cast<std::size_t>(dimension)];
+    for (const auto& [place, number] : places) all.insert(place.groups.begin(), place.groups.end());
+    for (const std::int64_t group : all) {
+      const auto overlaps = [&](const auto& entry) {
+        const auto& groups = entry.first.groups;
+        return std::binary_search(groups.begin(), groups.end(), group) &&
+               std::any_of(groups.begin(), groups.end(), [&](std::int64_t g) { return apart.contains(g); });
+      };
+      if (std::none_of(places.begin(), places.end(), overlaps)) apart.insert(group);
+    }
+    return apart;
+  }
+
+  /// References and sets of what the places of elements are.
+  void finish(int dimension, std::vector<std::int64_t>& refs, RawMesh& raw) {
+    const auto& places = places_[static_cast<std::size_t>(dimension)];
+    const std::set<std::int64_t> apart = groups_apart(dimension);
+    std::set<std::int64_t> taken = apart;
+    for (const auto& [place, number] : places) taken.insert(place.groups.begin(), place.groups.end());
+    std::int64_t free = taken.empty() ? 1 : *taken.rbegin() + 1;
+    for (const auto& [place, number] : places) free = std::max(free, place.entity + 1);
+    std::vector<std::int64_t> ref_of(places.size());
+    std::vector<std::vector<std::int64_t>> sets_of(places.size());
+    for (const auto& [place, number] : places) {
+      std::int64_t& ref = ref_of[number] = kNone;
+      for (const std::int64_t group : place.groups)
+        apart.contains(group) ? static_cast<void>(ref = group) : sets_of[number].push_back(group);
+      if (ref == kNone) ref = taken.insert(place.entity).second ? place.entity : free++;
+    }
+    std::map<std::int64_t, std::vector<std::uint32_t>> sets;
+    for (std::uint32_t i = 0; i < refs.size(); ++i) {
+      const auto number = static_cast<std::size_t>(refs[i]);
+      for (const std::int64_t group : sets_of[number]) sets[group].push_back(i);
+      refs[i] = ref_of[number];
+    }
+    for (auto& [tag, members] : sets)
+      raw.groups.push_back(
+          {name_of(dimension, tag), kKindOfDimension[static_cast<std::size_t>(dimension)], std::move(members)});
+  }
+
+  std::map<std::pair<int, std::int64_t>, std::string> names_;  ///< by dimension and tag
+  std::array<std::map<Place, std::size_t>, 4> places_;         ///< by dimension
+  std::map<std::int64_t, std::vector<std::uint32_t>> node_groups_;
+};
+
+/// From places to places in the order of the tags; empty if they are in order.
+std::vector<std::uint32_t> places_by_tag(const std::vector<std::uint64_t>& tags) {
+  if (std::is_sorted(tags.begin(), tags.end())) return {};
+  std::vector<std::uint32_t> order(tags.size()), place(tags.size());
+  std::iota(order.begin(), order.end(), 0);
+  std::stable_sort(order.begin(), order.end(), [&](std::uint32_t a, std::uint32_t b) { return tags[a] < tags[b]; });
+  for (std::uint32_t i = 0; i < order.size(); ++i) place[order[i]] = i;
+  return place;
+}
+template <class T>
+void permute(std::vector<T>& items, const std::vector<std::uint32_t>& place) {
+  if (items.empty() || place.empty()) return;
+  std::vector<T> ordered(items.size());
+  for (std::size_t i = 0; i < items.size(); ++i) ordered[place[i]] = items[i];
+  items = std::move(ordered);
+}
+
+/// Of wide cells or faces, whose parts have one tag and stay together.
+template <class Wide>
+void sort_wide(std::vector<Wide>& wide, const std::vector<std::uint32_t>& place) {
+  if (place.empty()) return;
+  for (Wide& w : wide) w.first = place[w.first];
+  std::sort(wide.begin(), wide.end(), [](const Wide& a, const Wide& b) { return a.first < b.first; });
+}
+
+/// Files list by entity; tags tell the order in which things were made.
+void sort_by_tags(RawMesh& raw, const std::vector<std::uint64_t>& node_tags,
+                  const std::array<std::vector<std::uint64_t>, 4>& element_tags) {
+  std::array<std::vector<std::uint32_t>, 4> place{places_by_tag(node_tags)};
+  for (std::size_t d = 1; d < 4; ++d) place[d] = places_by_tag(element_tags[d]);
+  permute(raw.points, place[0]);
+  permute(raw.field.at_points, place[0]);
+  permute(raw.field.at_triangles, place[2]);
+  permute(raw.field.at_tets, place[3]);
+  if (!place[0].empty()) {
+    renumber(raw.tets, place[0]);
+    renumber(raw.triangles, place[0]);
+    renumber(raw.edges, place[0]);
+    for (auto& mids : raw.mid_nodes)
+      for (VertexIndex& v : mids)
+        if (v != kNone) v = place[0][v];
+    renumber_wide(raw, place[0]);
+  }
+  sort_wide(raw.wide_cells, place[3]);
+  sort_wide(raw.wide_faces, place[2]);
+  permute(raw.edges, place[1]);
+  permute(raw.edge_ref, place[1]);
+  permute(raw.triangles, place[2]);
+  permute(raw.triangle_ref, place[2]);
+  permute(raw.tets, place[3]);
+  permute(raw.mid_nodes, place[3]);
+  permute(raw.tet_ref, place[3]);
+  if (!place[0].empty())
+    for (RawMesh::Period& period : raw.periods)
+      for (auto& pair : period.pairs)
+        for (VertexIndex& v : pair) v = place[0][v];
+  for (RawMesh::Group& group : raw.groups) {
+    const auto& to = place[dimension_of(group.kind)];
+    if (!to.empty())
+      for (std::uint32_t& m : group.members) m = to[m];
+  }
+}
+
+/// The field that is asked for, by tags of nodes and elements.
+class MshData {
+ public:
+  /// Values at nodes or in elements by their tags. Names, times and counts are text also in binary files.
+  void read(MshStream& in, const Input& input, RawMesh& raw, bool of_nodes) {
+    Scanner& text = in.text();
+    std::string name;
+    const std::int64_t names = text.integer("the number of names");
+    for (std::int64_t i = 0; i < names; ++i) {
+      text.at_end();
+      std::string_view line = text.rest_of_line();
+      if (line.size() >= 2 && line.front() == '"' && line.back() == '"') line = line.substr(1, line.size() - 2);
+      if (i == 0) name = line;
+    }
+    const std::int64_t times = text.integer("the number of times");
+    for (std::int64_t i = 0; i < times; ++i) text.number("a time");
+    const std::int64_t counts = text.integer("the number of counts");
+    std::array<std::int64_t, 3> known{0, 1, 0};
+    for (std::int64_t i = 0; i < counts; ++i) {
+      const std::int64_t value = text.integer("a count");
+      if (i < 3) known[static_cast<std::size_t>(i)] = value;
+    }
+    in.skip_line_end();
+    const auto components = static_cast<std::uint64_t>(known[1]), count = static_cast<std::uint64_t>(known[2]);
+    if (known[1] < 1 || known[1] > 9 || known[2] < 0) in.fail("a field of no known kind; the file is damaged");
+    in.check_count(count, components, 0, 1, "values");
+    // A later step of a field goes before the one before.
+    const bool is_wanted = components == 1 && raw.field.offer(input, name);
+    std::vector<std::pair<std::uint64_t, double>> values;
+    for (std::uint64_t i = 0; i < count; ++i) {
+      const auto tag = static_cast<std::uint64_t>(in.int32("the tag of a value"));
+      for (std::uint64_t k = 0; k < components; ++k) {
+        const double value = in.real("a value");
+        if (is_wanted) values.emplace_back(tag, value);
+      }
+    }
+    if (!is_wanted) return;
+    std::sort(values.begin(), values.end());
+    data_[of_nodes ? 0 : 1] = std::move(values);
+  }
+
+  void finish(RawMesh& raw, const std::vector<std::uint64_t>& node_tags,
+              const std::array<std::vector<std::uint64_t>, 4>& element_tags) const {
+    raw.field.at_points = values_of(0, node_tags);
+    raw.field.at_triangles = values_of(1, element_tags[2]);
+    raw.field.at_tets = values_of(1, element_tags[3]);
+  }
+
+ private:
+  /// The values of a field in the order of these tags; empty unless each has one.
+  std::vector<double> values_of(std::size_t of_elements, const std::vector<std::uint64_t>& tags) const {
+    const auto& known = data_[of_elements];
+    std::vector<double> values;
+    if (known.empty()) return values;
+    for (const std::uint64_t tag : tags) {
+      const auto at = std::lower_bound(known.begin(), known.end(), tag,
+                                       [](const auto& entry, std::uint64_t t) { return entry.first < t; });
+      if (at == known.end() || at->first != tag) return {};
+      values.push_back(at->second);
+    }
+    return values;
+  }
+
+  std::array<std::vector<std::pair<std::uint64_t, double>>, 2> data_;
+};
+
+/// Entities of version 4, by dimension and tag.
+class MshEntityTable {
+ public:
+  /// What parts have of entities is named by them, too.
+  void read_of_parts(MshStream& in) {
+    in.size("the number of partitions");
+    const std::uint64_t ghosts = in.size("the number of ghost entities");
+    in.check_count(ghosts, 0, 0, 2, "ghost entities");
+    in.skip_int32(2 * ghosts);
+    read(in, true);
+  }
+
+  void read(MshStream& in, bool of_parts = false) {
+    std::array<std::uint64_t, 4> counts;
+    for (std::uint64_t& n : counts) n = in.size("a number of entities");
+    for (int dimension = 0; dimension < 4; ++dimension) {
+      const std::uint64_t reals = dimension == 0 ? 3 : 6;
+      in.check_count(counts[static_cast<std::size_t>(dimension)], reals, dimension == 0 ? 1 : 2, 1, "entities");
+      for (std::uint64_t i = 0; i < counts[static_cast<std::size_t>(dimension)]; ++i) {
+        const std::int64_t tag = in.int32("the tag of an entity");
+        if (of_parts) {
+          const std::int64_t parent_dimension = in.int32("the dimension of a parent");
+          const std::int64_t parent = in.int32("the tag of a parent");
+          if (parent_dimension == dimension) parent_[{dimension, tag}] = parent;
+          const std::uint64_t partitions = in.size("the number of partitions of an entity");
+          in.check_count(partitions, 0, 0, 1, "partitions");
+          in.skip_int32(partitions);
+        }
+        in.skip_real(reals);
+        const std::uint64_t groups = in.size("the number of physical groups");
+        if (groups > 0) {
+          in.check_count(groups, 0, 0, 1, "physical groups");
+          std::vector<std::int64_t>& of_entity = physical_[{dimension, tag}];
+          // The sign tells the orientation of the entity in its group.
+          for (std::uint64_t g = 0; g < groups; ++g) of_entity.push_back(std::abs(in.int32("a physical group")));
+        }
+        if (dimension > 0) in.skip_int32(in.size("the number of bounding entities"));
+      }
+    }
+  }
+
+  std::span<const std::int64_t> groups_of(int dimension, std::int64_t entity) const {
+    const auto physical = physical_.find({dimension, entity});
+    return physical == physical_.end() ? std::span<const std::int64_t>() : physical->second;
+  }
+  /// What it is a part of, or itself.
+  std::int64_t whole_of(int dimension, std::int64_t entity) const {
+    const auto parent = parent_.find({dimension, entity});
+    return parent == parent_.end() ? entity : parent->second;
+  }
+
+ private:
+  std::map<std::pair<int, std::int64_t>, std::vector<std::int64_t>> physical_;
+  std::map<std::pair<int, std::int64_t>, std::int64_t> parent_;  ///< of those of parts
+};
+
+class Msh {
+ public:
+  explicit Msh(const Input& input) : input_(input), in_(input) {}
+
+  RawMesh read() {
+    for (std::string_view name = in_.next_section(); !name.empty(); name = in_.next_section()) {
+      if (name == "MeshFormat") {
+        read_format();
+      } else if (name == "PhysicalNames") {
+        read_names();
+      } else if (name == "PartitionedEntities" && version_ == 4) {
+        entities_.read_of_parts(in_);
+      } else if (name == "Entities" && version_ == 4) {
+        entities_.read(in_);
+      } else if (name == "Nodes") {
+        require_format();
+        version_ == 4 ? read_nodes_4() : read_nodes_2();
+        if (const auto [twice, tag] = tags_.finish(); twice)
+          in_.fail(fmt::format("two nodes have the tag {}; the file is damaged: export it again", tag));
+      } else if (name == "Elements") {
+        require_format();
+        has_elements_ = true;
+        version_ == 4 ? read_elements_4() : read_elements_2();
+      } else if (name == "Periodic" && !tags_.empty()) {
+        version_ == 4 ? read_periodic_4() : read_periodic_2();
+      } else if (input_.field != nullptr && (name == "NodeData" || name == "ElementData")) {
+        data_.read(in_, input_, raw_, name == "NodeData");
+      } else {
+        in_.skip_section(name);
+        continue;
+      }
+      in_.end_section(name);
+    }
+    if (!has_elements_)
+      input_.fail("has no section $Elements; it is truncated or holds no mesh: copy or export it again");
+    unite_equal_elements();
+    places_.finish(raw_);
+    data_.finish(raw_, tags_.tags(), element_tags_);
+    sort_by_tags(raw_, tags_.tags(), element_tags_);
+    if (high_order_ > 0)
+      raw_.notes.push_back(fmt::format("{} elements of order 3 and more are taken as linear", high_order_));
+    raw_.format = version_ == 4 ? "Gmsh MSH 4.1" : "Gmsh MSH 2.2";
+    return std::move(raw_);
+  }
+
+ private:
+  void require_format() const {
+    if (version_ == 0) in_.fail("the section $MeshFormat must come first; the file is damaged: export it again");
+  }
+
+  void read_format() {
+    const double version = in_.text().number("the version of the format");
+    const std::int64_t type = in_.text().integer("the type of the file (0 or 1)");
+    const std::int64_t size = in_.text().integer("the size of a number");
+    if (version != 4.1 && !(version >= 2 && version < 3))
+      in_.fail(fmt::format(
+          "version {} of Gmsh's format is not read here; save it as 4.1 (gmsh FILE -save -format msh41)", version));
+    if (size != 8) in_.fail(fmt::format("numbers of {} bytes are not read here; save it on a 64-bit machine", size));
+    version_ = version == 4.1 ? 4 : 2;
+    if (type == 0) return;
+    in_.set_binary();
+    in_.skip_line_end();
+    if (in_.int32("the mark of the byte order") != 1)
+      in_.fail("big-endian files are not read here; save it on a little-endian machine or as text");
+  }
+
+  void read_names() {
+    Scanner& text = in_.text();
+    const std::int64_t count = text.integer("the number of names");
+    for (std::int64_t i = 0; i < count; ++i) {
+      const std::int64_t dimension = text.integer("the dimension of a physical group");
+      const std::int64_t tag = text.integer("the tag of a physical group");
+      std::string_view name = text.rest_of_line();
+      // Some programs put words of their own behind the name.
+      const std::size_t last = name.rfind('"');
+      if (last == 0 || last == std::string_view::npos || name.front() != '"') text.fail_expected("a name in quotes");
+      name = name.substr(1, last - 1);
+      if (dimension >= 0 && dimension < 4) places_.name(static_cast<int>(dimension), tag, name);
+    }
+  }
+
+  void add_node(std::uint64_t tag) {
+    if (raw_.points.size() >= kNone - 1) in_.fail(fmt::format("holds more than {} nodes", kNone - 1));
+    tags_.add(tag);
+  }
+
+  Vec3 point() {
+    const double x = in_.real("a coordinate"), y = in_.real("a coordinate"), z = in_.real("a coordinate");
+    return {x, y, z};
+  }
+
+  void read_nodes_4() {
+    const std::uint64_t blocks = in_.size("the number of blocks of nodes");
+    in_.skip_size(3);
+    for (std::uint64_t b = 0; b < blocks; ++b) {
+      const std::int64_t dimension = in_.int32("the dimension of an entity");
+      in_.skip_int32(1);
+      const bool parametric = in_.int32("whether nodes have parameters") != 0;
+      const std::uint64_t count = in_.size("the number of nodes");
+      if (dimension < 0 || dimension > 3)
+        in_.fail(fmt::format("an entity of dimension {}; the file is damaged", dimension));
+      const std::uint64_t parameters = parametric ? static_cast<std::uint64_t>(dimension) : 0;
+      in_.check_count(count, 3 + parameters, 1, 0, "nodes");
+      for (std::uint64_t i = 0; i < count; ++i) add_node(in_.size("the tag of a node"));
+      for (std::uint64_t i = 0; i < count; ++i) {
+        raw_.points.push_back(point());
+        in_.skip_real(parameters);
+      }
+    }
+  }
+
+  void read_nodes_2() {
+    const std::uint64_t count = static_cast<std::uint64_t>(in_.text().integer("the number of nodes"));
+    in_.skip_line_end();
+    in_.check_count(count, 3, 0, 1, "nodes");
+    for (std::uint64_t i = 0; i < count; ++i) {
+      add_node(static_cast<std::uint64_t>(in_.int32("the tag of a node")));
+      raw_.points.push_back(point());
+    }
+  }
+
+  VertexIndex node(std::uint64_t tag) const {
+    const VertexIndex v = tags_.index_of(tag);
+    if (v == kNone)
+      in_.fail(tags_.empty() ? "the elements come before the nodes, which is not read here; export it again"
+                             : fmt::format("an element has the node {}, which the file lacks; the file is damaged: "
+                                           "export it again",
+                                           tag));
+    return v;
+  }
+
+  /// An element of a kept type.
+  template <class Tag>
+  void add_element(std::int64_t type, std::uint64_t tag, std::int64_t ref, std::span<const std::int64_t> groups,
+                   const Tag& next_tag) {
+    std::array<VertexIndex, 128> nodes;
+    std::array<VertexIndex, 15> ours;
+    const std::size_t count = nodes_of_type(type);
+    for (std::size_t i = 0; i < count; ++i) nodes[i] = node(next_tag());
+    const std::span<const VertexIndex> all = std::span(nodes).first(kept_nodes(type));
+    high_order_ += is_of_high_order(type);
+    const int dimension = kept_dimension(type);
+    const auto d = static_cast<std::size_t>(dimension);
+    std::uint32_t index = nodes[0], parts = 1;
+    if (dimension == 3) {
+      index = static_cast<std::uint32_t>(raw_.tets.size());
+      if (all.size() == 4 || all.size() == 10)
+        raw_.add_tet(all, ref, kGmshMids);
+      else if (type == 5 || type == 12 || type == 17)
+        parts = raw_.add_hexahedron(all, ref, tags_.tags());
+      else
+        parts = raw_.add_wide_cell(in_our_order(all, kGmshWide, ours), ref, tags_.tags());
+    } else if (dimension == 2) {
+      index = static_cast<std::uint32_t>(raw_.triangles.size());
+      parts = raw_.add_face(all, ref);
+    } else if (dimension == 1) {
+      index = static_cast<std::uint32_t>(raw_.edges.size());
+      raw_.edges.push_back({nodes[0], nodes[1]});
+      raw_.edge_ref.push_back(ref);
+    }
+    if (dimension > 0) return static_cast<void>(element_tags_[d].insert(element_tags_[d].end(), parts, tag));
+    for (const std::int64_t group : groups) places_.add_node(group, index);
+  }
+
   void unite_equal_elements() {
-    if (is_in_several_groups_[1]) unite_equal(1, raw_.edges, raw_.edge_ref);
-    if (is_in_several_groups_[2]) unite_equal(2, raw_.triangles, raw_.triangle_ref);
-    if (is_in_several_groups_[3]) drop_equal_tets(unite_equal(3, raw_.tets, raw_.tet_ref));
+    if (is_in_several_groups_[1]) places_.unite_equal(1, raw_.edges, raw_.edge_ref);
+    if (is_in_several_groups_[2]) places_.unite_equal(2, raw_.triangles, raw_.triangle_ref);
+    if (is_in_several_groups_[3]) drop_equal_tets(places_.unite_equal(3, raw_.tets, raw_.tet_ref));
   }
 
   void drop_equal_tets(const std::vector<std::uint32_t>& first) {
@@ -467,23 +619,6 @@ class Msh {
     if (!raw_.mid_nodes.empty()) raw_.mid_nodes.resize(kept);
     std::erase_if(raw_.wide_cells, [&](const WideCell& cell) { return now[cell.first] == kNone; });
     for (WideCell& cell : raw_.wide_cells) cell.first = now[cell.first];
-  }
-
-  /// From places to places in the order of the tags; empty if they are in order.
-  static std::vector<std::uint32_t> places_by_tag(const std::vector<std::uint64_t>& tags) {
-    if (std::is_sorted(tags.begin(), tags.end())) return {};
-    std::vector<std::uint32_t> order(tags.size()), place(tags.size());
-    std::iota(order.begin(), order.end(), 0);
-    std::stable_sort(order.begin(), order.end(), [&](std::uint32_t a, std::uint32_t b) { return tags[a] < tags[b]; });
-    for (std::uint32_t i = 0; i < order.size(); ++i) place[order[i]] = i;
-    return place;
-  }
-  template <class T>
-  static void permute(std::vector<T>& items, const std::vector<std::uint32_t>& place) {
-    if (items.empty() || place.empty()) return;
-    std::vector<T> ordered(items.size());
-    for (std::size_t i = 0; i < items.size(); ++i) ordered[place[i]] = items[i];
-    items = std::move(ordered);
   }
 
   /// The period with this matrix of four rows; those of points and curves, which surfaces have too, are none.
@@ -541,112 +676,6 @@ class Msh {
     }
   }
 
-  /// Values at nodes or in elements by their tags. Names, times and counts are text also in binary files.
-  void read_data(bool of_nodes) {
-    Scanner& text = in_.text();
-    std::string name;
-    const std::int64_t names = text.integer("the number of names");
-    for (std::int64_t i = 0; i < names; ++i) {
-      text.at_end();
-      std::string_view line = text.rest_of_line();
-      if (line.size() >= 2 && line.front() == '"' && line.back() == '"') line = line.substr(1, line.size() - 2);
-      if (i == 0) name = line;
-    }
-    const std::int64_t times = text.integer("the number of times");
-    for (std::int64_t i = 0; i < times; ++i) text.number("a time");
-    const std::int64_t counts = text.integer("the number of counts");
-    std::array<std::int64_t, 3> known{0, 1, 0};
-    for (std::int64_t i = 0; i < counts; ++i) {
-      const std::int64_t value = text.integer("a count");
-      if (i < 3) known[static_cast<std::size_t>(i)] = value;
-    }
-    skip_line_end();
-    const auto components = static_cast<std::uint64_t>(known[1]), count = static_cast<std::uint64_t>(known[2]);
-    if (known[1] < 1 || known[1] > 9 || known[2] < 0) in_.fail("a field of no known kind; the file is damaged");
-    in_.check_count(count, components, 0, 1, "values");
-    // A later step of a field goes before the one before.
-    const bool is_wanted = components == 1 && raw_.field.offer(input_, name);
-    std::vector<std::pair<std::uint64_t, double>> values;
-    for (std::uint64_t i = 0; i < count; ++i) {
-      const auto tag = static_cast<std::uint64_t>(in_.int32("the tag of a value"));
-      for (std::uint64_t k = 0; k < components; ++k) {
-        const double value = in_.real("a value");
-        if (is_wanted) values.emplace_back(tag, value);
-      }
-    }
-    if (!is_wanted) return;
-    std::sort(values.begin(), values.end());
-    data_[of_nodes ? 0 : 1] = std::move(values);
-  }
-
-  /// The values of a field in the order of these tags; empty unless each has one.
-  std::vector<double> values_of(std::size_t of_elements, const std::vector<std::uint64_t>& tags) const {
-    const auto& known = data_[of_elements];
-    std::vector<double> values;
-    if (known.empty()) return values;
-    for (const std::uint64_t tag : tags) {
-      const auto at = std::lower_bound(known.begin(), known.end(), tag,
-                                       [](const auto& entry, std::uint64_t t) { return entry.first < t; });
-      if (at == known.end() || at->first != tag) return {};
-      values.push_back(at->second);
-    }
-    return values;
-  }
-
-  void finish_field() {
-    raw_.field.at_points = values_of(0, tags_.tags());
-    raw_.field.at_triangles = values_of(1, element_tags_[2]);
-    raw_.field.at_tets = values_of(1, element_tags_[3]);
-  }
-
-  /// Files list by entity; tags tell the order in which things were made.
-  void sort_by_tags() {
-    std::array<std::vector<std::uint32_t>, 4> place{places_by_tag(tags_.tags())};
-    for (std::size_t d = 1; d < 4; ++d) place[d] = places_by_tag(element_tags_[d]);
-    permute(raw_.points, place[0]);
-    permute(raw_.field.at_points, place[0]);
-    permute(raw_.field.at_triangles, place[2]);
-    permute(raw_.field.at_tets, place[3]);
-    if (!place[0].empty()) {
-      renumber(raw_.tets, place[0]);
-      renumber(raw_.triangles, place[0]);
-      renumber(raw_.edges, place[0]);
-      for (auto& mids : raw_.mid_nodes)
-        for (VertexIndex& v : mids)
-          if (v != kNone) v = place[0][v];
-      renumber_wide(raw_, place[0]);
-    }
-    sort_wide(raw_.wide_cells, place[3]);
-    sort_wide(raw_.wide_faces, place[2]);
-    permute(raw_.edges, place[1]);
-    permute(raw_.edge_ref, place[1]);
-    permute(raw_.triangles, place[2]);
-    permute(raw_.triangle_ref, place[2]);
-    permute(raw_.tets, place[3]);
-    permute(raw_.mid_nodes, place[3]);
-    permute(raw_.tet_ref, place[3]);
-    if (!place[0].empty())
-      for (RawMesh::Period& period : raw_.periods)
-        for (auto& pair : period.pairs)
-          for (VertexIndex& v : pair) v = place[0][v];
-    for (RawMesh::Group& group : raw_.groups) {
-      const auto& to = place[static_cast<std::size_t>(dimension_of(group.kind))];
-      if (!to.empty())
-        for (std::uint32_t& m : group.members) m = to[m];
-    }
-  }
-  /// Of wide cells or faces, whose parts have one tag and stay together.
-  template <class Wide>
-  static void sort_wide(std::vector<Wide>& wide, const std::vector<std::uint32_t>& place) {
-    if (place.empty()) return;
-    for (Wide& w : wide) w.first = place[w.first];
-    std::sort(wide.begin(), wide.end(), [](const Wide& a, const Wide& b) { return a.first < b.first; });
-  }
-  static int dimension_of(NamedSet::Kind kind) {
-    return static_cast<int>(std::find(kKindOfDimension.begin(), kKindOfDimension.end(), kind) -
-                            kKindOfDimension.begin());
-  }
-
   std::uint64_t known_nodes_of_type(std::int64_t type) {
     const std::uint64_t nodes = nodes_of_type(type);
     if (nodes == 0) in_.fail(fmt::format("elements of type {} are not known here; export linear tetrahedra", type));
@@ -663,17 +692,14 @@ class Msh {
       const std::uint64_t nodes = known_nodes_of_type(type);
       const std::uint64_t count = in_.size("the number of elements");
       in_.check_count(count, 0, nodes + 1, 0, "elements");
-      const auto physical = physical_.find({static_cast<int>(dimension), entity});
-      const std::span<const std::int64_t> groups =
-          physical == physical_.end() ? std::span<const std::int64_t>() : physical->second;
-      const auto parent = parent_.find({static_cast<int>(dimension), entity});
-      const std::int64_t whole = parent == parent_.end() ? entity : parent->second;
+      const std::span<const std::int64_t> groups = entities_.groups_of(static_cast<int>(dimension), entity);
+      const std::int64_t whole = entities_.whole_of(static_cast<int>(dimension), entity);
       if (kept_dimension(type) < 0) {
         raw_.other_elements += count;
         in_.skip_size(count * (nodes + 1));
         continue;
       }
-      const std::int64_t ref = place_of(kept_dimension(type), {whole, {groups.begin(), groups.end()}});
+      const std::int64_t ref = places_.place_of(kept_dimension(type), {whole, {groups.begin(), groups.end()}});
       for (std::uint64_t i = 0; i < count; ++i) {
         const std::uint64_t tag = in_.size("the tag of an element");
         add_element(type, tag, ref, groups, [this] { return in_.size("a node of an element"); });
@@ -702,7 +728,7 @@ class Msh {
     // Consecutive elements mostly share a place.
     if (const std::array<std::int64_t, 3> here{dimension, tags[0], tags[1]}; here != last_place_ || last_ref_ < 0) {
       last_place_ = here;
-      last_ref_ = place_of(dimension, {tags[1], {groups.begin(), groups.end()}});
+      last_ref_ = places_.place_of(dimension, {tags[1], {groups.begin(), groups.end()}});
     }
     add_element(type, number, last_ref_, groups,
                 [this] { return static_cast<std::uint64_t>(in_.int32("a node of an element")); });
@@ -710,7 +736,7 @@ class Msh {
 
   void read_elements_2() {
     const std::int64_t count = in_.text().integer("the number of elements");
-    skip_line_end();
+    in_.skip_line_end();
     in_.check_count(static_cast<std::uint64_t>(count), 0, 0, 2, "elements");
     for (std::int64_t i = 0; i < count;) {
       std::uint64_t number = in_.is_binary() ? 0 : static_cast<std::uint64_t>(in_.int32("the number of an element"));
@@ -734,23 +760,25 @@ class Msh {
   bool has_elements_ = false;
   NodeTags tags_;
   std::uint64_t high_order_ = 0;  ///< elements of order 3 and more
-  // By dimension and tag.
-  std::map<std::pair<int, std::int64_t>, std::vector<std::int64_t>> physical_;  ///< of entities
-  std::map<std::pair<int, std::int64_t>, std::int64_t> parent_;                 ///< of entities of parts
-  std::map<std::pair<int, std::int64_t>, std::string> names_;
-  std::array<std::map<Place, std::size_t>, 4> places_;  ///< by dimension
-  std::map<std::int64_t, std::vector<std::uint32_t>> node_groups_;
+  MshEntityTable entities_;
+  MshPlaces places_;
   std::map<std::pair<int, std::int64_t>, std::int64_t> group_of_entity_;  ///< the first one, of version 2
   std::array<bool, 4> is_in_several_groups_{};                            ///< some entity of the dimension
   std::array<std::int64_t, 3> last_place_{};
   std::int64_t last_ref_ = -1;
   std::array<std::vector<std::uint64_t>, 4> element_tags_;
-  /// Of the field that is asked for, by tags of nodes and elements.
-  std::array<std::vector<std::pair<std::uint64_t, double>>, 2> data_;
+  MshData data_;
   RawMesh raw_;
 };
 
 }  // namespace
+
+Told told_msh(const FileHead& head) {
+  if (head.first == "$MeshFormat") return Told::kMagic;
+  // Comments are sections like any other and may come first.
+  const bool follows = head.first.starts_with('$') && head.input.bytes.find("$MeshFormat") != std::string_view::npos;
+  return follows ? Told::kFirstLetter : Told::kNot;
+}
 
 RawMesh read_msh(const Input& input) {
   return Msh(input).read();

@@ -557,6 +557,13 @@ class Nastran {
 
 }  // namespace
 
+Told told_nastran(const FileHead& head) {
+  if (head.input.bytes.starts_with("*KEYWORD")) return Told::kNot;  // of LS-DYNA
+  const bool is_ours =
+      head.ends_in({".bdf", ".nas"}) || head.has_line("BEGIN BULK") || head.has_line("GRID") || head.has_line("CTETRA");
+  return is_ours ? Told::kLines : Told::kNot;
+}
+
 RawMesh read_nastran(const Input& input) {
   return Nastran(input).read();
 }

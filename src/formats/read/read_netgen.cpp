@@ -146,6 +146,10 @@ class Netgen {
 
 }  // namespace
 
+Told told_netgen(const FileHead& head) {
+  return head.first == "mesh3d" ? Told::kMagic : Told::kNot;
+}
+
 RawMesh read_netgen(const Input& input) {
   return Netgen(input).read();
 }

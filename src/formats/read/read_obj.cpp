@@ -14,6 +14,8 @@
 namespace octafront::io {
 namespace {
 
+using namespace std::string_view_literals;
+
 class Obj {
  public:
   explicit Obj(const Input& input)
@@ -197,7 +199,29 @@ class Obj {
   std::vector<Edge> edges_;
 };
 
+bool is_obj_keyword(std::string_view word) {
+  constexpr std::array kWords{"v"sv,      "vt"sv,  "vn"sv,     "vp"sv,     "f"sv,   "fo"sv,   "g"sv,
+                              "o"sv,      "s"sv,   "usemtl"sv, "mtllib"sv, "l"sv,   "p"sv,    "mg"sv,
+                              "cstype"sv, "deg"sv, "usemap"sv, "maplib"sv, "lod"sv, "bevel"sv};
+  return std::find(kWords.begin(), kWords.end(), word) != kWords.end();
+}
+
+/// True if the first lines that are neither blank nor comments all begin with words of the format.
+bool looks_like_obj(const Input& input) {
+  Scanner scan(input, '#');
+  int lines = 0;
+  for (; lines < 16 && !scan.at_end(); ++lines) {
+    if (!is_obj_keyword(scan.word())) return false;
+    while (scan.rest_of_line().ends_with('\\')) scan.at_end();
+  }
+  return lines > 0;
+}
+
 }  // namespace
+
+Told told_obj(const FileHead& head) {
+  return !head.is_binary && looks_like_obj(head.input) ? Told::kLines : Told::kNot;
+}
 
 SurfaceFile read_obj(const Input& input) {
   return Obj(input).read();

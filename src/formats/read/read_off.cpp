@@ -109,7 +109,22 @@ class Off {
   std::vector<std::uint32_t> corners_;
 };
 
+bool is_off_keyword(std::string_view word) {
+  const std::size_t off = word.rfind("OFF");
+  if (off == std::string_view::npos) return word == "off";
+  // Some collections glue the first count to the keyword: "OFF8".
+  const std::string_view before = word.substr(0, off), behind = word.substr(off + 3);
+  return before.size() <= 6 && before.find_first_not_of("STCN4n") == std::string_view::npos &&
+         behind.find_first_not_of("0123456789") == std::string_view::npos;
+}
+
 }  // namespace
+
+Told told_off(const FileHead& head) {
+  if (is_off_keyword(head.first)) return Told::kKeyword;
+  // The keyword may be missing.
+  return !head.is_binary && head.ends_in({".off"}) && is_plain_number(head.first) ? Told::kLines : Told::kNot;
+}
 
 SurfaceFile read_off(const Input& input) {
   Off by_line(input, Layout::kByLine);

@@ -319,6 +319,11 @@ auto with_body(const Input& input, bool of_lines, const Work& work) {
 
 }  // namespace
 
+Told told_ply(const FileHead& head) {
+  const std::string_view bytes = head.input.bytes;
+  return bytes.starts_with("ply") && (bytes.size() == 3 || is_blank(bytes[3])) ? Told::kMagic : Told::kNot;
+}
+
 SurfaceFile read_ply(const Input& input) {
   return with_body(input, false, [](auto&& body) { return body.read(); });
 }

@@ -319,6 +319,10 @@ class Poly {
 
 }  // namespace
 
+Told told_poly(const FileHead& head) {
+  return head.ends_in({".poly", ".smesh"}) ? Told::kEnding : Told::kNot;
+}
+
 SurfaceFile read_poly(const Input& input, bool simple, const Input* nodes) {
   return Poly(input, simple, nodes).read();
 }

@@ -4,7 +4,6 @@
 #include "formats/containers/scanner.h"
 #include "formats/parts/surface_builder.h"
 #include "formats/read/readers.h"
-#include "formats/table/recognize.h"
 
 #include <array>
 #include <cstring>
@@ -119,8 +118,6 @@ std::uint32_t little_endian_u32(const char* p) {
 
 constexpr std::size_t kHeader = 84, kRecord = 50;
 
-}  // namespace
-
 SurfaceFile read_ascii_stl(const Input& input) {
   return AsciiStl(input).read();
 }
@@ -161,6 +158,22 @@ SurfaceFile read_binary_stl(const Input& input) {
   if (bytes.size() > wanted)
     builder.notes.push_back(fmt::format("{} bytes behind the last triangle ignored", bytes.size() - wanted));
   return builder.finish(input, "binary STL", false, 0);
+}
+
+}  // namespace
+
+Told told_stl(const FileHead& head) {
+  // Before words: many binary files begin with "solid" all the same.
+  if (is_binary_stl(head.input.bytes, head.input.bytes.size())) return Told::kMagic;
+  const bool is_solid = equal_ignoring_case(head.first, "solid");
+  if (!head.is_binary) return is_solid ? Told::kKeyword : Told::kNot;
+  // Of a wrong size: the reader says what is missing, or that bytes follow.
+  return is_solid || head.ends_in({".stl"}) ? Told::kLines : Told::kNot;
+}
+
+SurfaceFile read_stl(const Input& input) {
+  const bool is_binary = is_binary_stl(input.bytes, input.bytes.size()) || looks_binary(input.bytes);
+  return is_binary ? read_binary_stl(input) : read_ascii_stl(input);
 }
 
 }  // namespace octafront::io

@@ -114,6 +114,11 @@ class Tetgen {
 
 }  // namespace
 
+Told told_tetgen(const FileHead& head) {
+  const bool is_ls_dyna = head.input.bytes.starts_with("*KEYWORD");
+  return head.ends_in({".ele", ".node"}) && !is_ls_dyna ? Told::kEnding : Told::kNot;
+}
+
 RawMesh read_tetgen(const TetgenFiles& files) {
   return Tetgen(files).read();
 }

@@ -265,6 +265,11 @@ class Unv {
 
 }  // namespace
 
+Told told_unv(const FileHead& head) {
+  const bool is_dataset = head.first == "-1" && is_plain_number(head.second) && head.second.size() <= 5;
+  return is_dataset ? Told::kKeyword : Told::kNot;
+}
+
 RawMesh read_unv(const Input& input) {
   return Unv(input).read();
 }

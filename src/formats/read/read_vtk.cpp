@@ -322,6 +322,10 @@ class Vtk {
 
 }  // namespace
 
+Told told_vtk(const FileHead& head) {
+  return head.kind.find("legacy VTK") != std::string_view::npos ? Told::kMagic : Told::kNot;
+}
+
 RawMesh read_vtk(const Input& input) {
   return Vtk(input).read();
 }

@@ -179,6 +179,10 @@ class Vtu {
 
 }  // namespace
 
+Told told_vtu(const FileHead& head) {
+  return head.kind.find("unstructured grid") != std::string_view::npos ? Told::kMagic : Told::kNot;
+}
+
 RawMesh read_vtu(const Input& input) {
   return Vtu(input).read();
 }

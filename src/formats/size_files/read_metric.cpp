@@ -7,7 +7,7 @@
 #include "formats/containers/input.h"
 #include "formats/containers/scanner.h"
 #include "formats/parts/medit_sections.h"
-#include "formats/read/readers.h"
+#include "formats/table/formats.h"
 #include "formats/size_files/readers.h"
 
 #include <algorithm>

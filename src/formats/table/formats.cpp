@@ -1,6 +1,7 @@
 #include "formats/table/formats.h"
 
 #include "formats/containers/scanner.h"
+#include "formats/read/readers.h"
 #include "formats/write/writers.h"
 
 #include <array>
@@ -13,22 +14,48 @@ constexpr bool kYes = true, kNo = false;
 #ifdef OCTAFRONT_WITH_HDF5
 constexpr auto kWriteMed = write_med, kWriteXdmf = write_xdmf, kWriteCgns = write_cgns, kWriteVtkHdf = write_vtkhdf;
 constexpr void (*kWriteVtkHdfParts)(MeshOutput&, Pieces&) = write_vtkhdf_parts;
+constexpr auto kReadMed = read_med, kReadXdmf = read_xdmf;
 #else
 constexpr void (*kWriteMed)(MeshOutput&, const MeshParts&) = nullptr;
 constexpr auto kWriteXdmf = kWriteMed, kWriteCgns = kWriteMed, kWriteVtkHdf = kWriteMed;
 constexpr void (*kWriteVtkHdfParts)(MeshOutput&, Pieces&) = nullptr;
+RawMesh refuse_hdf5(const Input& input) {
+  input.fail(
+      "needs HDF5, which this octafront was built without: build it with libhdf5-dev installed, or convert the file");
+}
+constexpr auto kReadMed = refuse_hdf5, kReadXdmf = refuse_hdf5;
 #endif
 
 constexpr FormatHolds kBoundary{.surfaces_alone = true};
 /// A format of surfaces; of a mesh it takes the boundary.
 constexpr Format surface(std::string_view name, std::string_view title, std::string_view endings,
-                         std::string_view carries, void (*write)(AtomicFile&, const SurfaceMesh&)) {
-  return {{name, title, endings, kYes, kYes, kNo, kYes, kBoundary, carries, true}, write};
+                         std::string_view carries, void (*write)(AtomicFile&, const SurfaceMesh&),
+                         Told (*told)(const FileHead&), SurfaceFile (*read)(const Input&)) {
+  Format format{{name, title, endings, kYes, kYes, kNo, kYes, kBoundary, carries, true}, write};
+  format.told = told;
+  format.read_surface = read;
+  return format;
+}
+constexpr Format with_lines(Format format, LinesFile (*read)(const Input&)) {
+  format.read_lines = read;
+  return format;
 }
 
-constexpr Format mesh(std::string_view name, std::string_view title, std::string_view endings, bool reads,
-                      FormatHolds holds, std::string_view carries, void (*write)(MeshOutput&, const MeshParts&)) {
-  return {{name, title, endings, kNo, kNo, reads, write != nullptr, holds, carries, true}, nullptr, write};
+constexpr Format mesh(std::string_view name, std::string_view title, std::string_view endings, FormatHolds holds,
+                      std::string_view carries, void (*write)(MeshOutput&, const MeshParts&)) {
+  return {{name, title, endings, kNo, kNo, kNo, write != nullptr, holds, carries, true}, nullptr, write};
+}
+constexpr Format read(Format format, Told (*told)(const FileHead&), RawMesh (*read_mesh)(const Input&)) {
+  format.info.reads_mesh = true;
+  format.told = told;
+  format.read_mesh = read_mesh;
+  return format;
+}
+Told told_xdmf(const FileHead& head) {
+  return head.kind == "an XDMF mesh" ? Told::kMagic : Told::kNot;
+}
+Told told_hdf5(const FileHead& head) {
+  return head.kind == "an HDF5 file" ? Told::kMagic : Told::kNot;
 }
 
 constexpr FormatHolds kAll{.regions = Keeps::kNames,
@@ -119,71 +146,86 @@ constexpr std::array kFormats{
     surface("stl", "STL", ".stl",
             "read as text or binary, written binary: single precision, no shared vertices, no patches (read: named "
             "solids)",
-            write_stl),
-    surface("obj", "OBJ", ".obj", "double precision, patches by name as groups", write_obj),
-    surface("off", "OFF", ".off", "double precision, no patches", write_off),
-    surface("ply", "PLY", ".ply",
-            "read as text or binary, written binary: double precision, patches, and regions on "
-            "both sides, with names",
-            write_ply),
-    Format{{"poly",
-            "TetGen PLC",
-            ".poly .smesh",
-            kYes,
-            kNo,
-            kNo,
-            kNo,
-            {},
-            "facets, with markers as patches, regions and holes; read only"},
-           nullptr},
-    with_fields(with_wedges(or_text(mesh(
-        "vtu", "VTU", ".vtu", kYes, binary(kAll),
-        "VTK unstructured grid, compressed or text: numbers, names and sets as arrays; beta per element", write_vtu)))),
-    with_parts(with_fields(with_wedges(or_text(mesh("msh", "Gmsh MSH 4.1", ".msh", kYes, binary(kAll),
-                                                    "binary or text: all as physical groups", write_msh)))),
-               write_msh_parts),
-    with_fields(with_wedges(or_text(mesh("msh22", "Gmsh MSH 2.2", "", kYes, binary(without_sets(kAll)),
-                                         "binary or text: regions, patches, curves as physical groups", write_msh2)))),
-    with_cohesive(with_wedges(mesh("abaqus", "Abaqus, CalculiX", ".inp", kYes, kSolver,
-                                   "ELSET, NSET, SURFACE; numbers of at most 20 characters", write_abaqus))),
-    with_wedges(mesh("nastran", "Nastran", ".bdf .nas", kYes, kSolver,
-                     "PSOLID, PSHELL, SET; numbers of at most 16 characters (9 to 15 digits)", write_nastran)),
-    with_wedges(mesh("unv", "I-deas universal", ".unv", kYes, kAll, "groups (dataset 2477); 17 digits", write_unv)),
-    with_wedges(mesh("med", "MED 4", ".med", kYes, binary(kAll), "families and groups; needs HDF5", kWriteMed)),
-    with_wedges(of_several_files(
-        mesh("xdmf", "XDMF", ".xdmf", kYes, binary(kAll), "with values in files .h5 beside; needs HDF5", kWriteXdmf))),
-    with_wedges(mesh("exodus", "Exodus II", ".exo .e .ex2", kNo, binary(kSolver), "blocks, node, side and element sets",
-                     write_exodus)),
-    with_wedges(mesh("ansys", "Ansys archive", ".cdb", kNo, kAnsys, "components; 17 digits", write_ansys)),
-    with_linear_wedges(mesh("lsdyna", "LS-DYNA", ".k .key", kNo, kSolver,
-                            "parts and sets; numbers of at most 16 characters (9 to 15 digits)", write_lsdyna)),
-    with_wedges(
-        mesh("febio", "FEBio 4", ".feb", kNo, kAll, "Elements, Surface, Edge, NodeSet, ElementSet", write_febio)),
-    with_wedges(mesh("su2", "SU2", ".su2", kNo, kSu2, "markers", write_su2)),
+            write_stl, told_stl, read_stl),
+    with_lines(
+        surface("obj", "OBJ", ".obj", "double precision, patches by name as groups", write_obj, told_obj, read_obj),
+        read_obj_lines),
+    surface("off", "OFF", ".off", "double precision, no patches", write_off, told_off, read_off),
+    with_lines(surface("ply", "PLY", ".ply",
+                       "read as text or binary, written binary: double precision, patches, and regions on "
+                       "both sides, with names",
+                       write_ply, told_ply, read_ply),
+               read_ply_lines),
     [] {
-      Format format = of_several_files(mesh("openfoam", "OpenFOAM polyMesh", "", kNo, kOpenFoam,
+      Format format =
+          surface("poly", "TetGen PLC", ".poly .smesh", "facets, with markers as patches, regions and holes; read only",
+                  nullptr, told_poly, read_poly);
+      format.info.writes_surface = format.info.writes_mesh = false;
+      format.info.holds = {};
+      return format;
+    }(),
+    read(with_fields(with_wedges(or_text(
+             mesh("vtu", "VTU", ".vtu", binary(kAll),
+                  "VTK unstructured grid, compressed or text: numbers, names and sets as arrays; beta per element",
+                  write_vtu)))),
+         told_vtu, read_vtu),
+    read(with_parts(with_fields(with_wedges(or_text(mesh("msh", "Gmsh MSH 4.1", ".msh", binary(kAll),
+                                                         "binary or text: all as physical groups", write_msh)))),
+                    write_msh_parts),
+         told_msh, read_msh),
+    read(with_fields(
+             with_wedges(or_text(mesh("msh22", "Gmsh MSH 2.2", "", binary(without_sets(kAll)),
+                                      "binary or text: regions, patches, curves as physical groups", write_msh2)))),
+         nullptr, read_msh),
+    read(with_cohesive(with_wedges(mesh("abaqus", "Abaqus, CalculiX", ".inp", kSolver,
+                                        "ELSET, NSET, SURFACE; numbers of at most 20 characters", write_abaqus))),
+         told_abaqus, read_abaqus),
+    read(with_wedges(mesh("nastran", "Nastran", ".bdf .nas", kSolver,
+                          "PSOLID, PSHELL, SET; numbers of at most 16 characters (9 to 15 digits)", write_nastran)),
+         told_nastran, read_nastran),
+    read(with_wedges(mesh("unv", "I-deas universal", ".unv", kAll, "groups (dataset 2477); 17 digits", write_unv)),
+         told_unv, read_unv),
+    read(with_wedges(mesh("med", "MED 4", ".med", binary(kAll), "families and groups; needs HDF5", kWriteMed)),
+         told_hdf5, kReadMed),
+    read(with_wedges(of_several_files(
+             mesh("xdmf", "XDMF", ".xdmf", binary(kAll), "with values in files .h5 beside; needs HDF5", kWriteXdmf))),
+         told_xdmf, kReadXdmf),
+    with_wedges(mesh("exodus", "Exodus II", ".exo .e .ex2", binary(kSolver), "blocks, node, side and element sets",
+                     write_exodus)),
+    with_wedges(mesh("ansys", "Ansys archive", ".cdb", kAnsys, "components; 17 digits", write_ansys)),
+    with_linear_wedges(mesh("lsdyna", "LS-DYNA", ".k .key", kSolver,
+                            "parts and sets; numbers of at most 16 characters (9 to 15 digits)", write_lsdyna)),
+    with_wedges(mesh("febio", "FEBio 4", ".feb", kAll, "Elements, Surface, Edge, NodeSet, ElementSet", write_febio)),
+    with_wedges(mesh("su2", "SU2", ".su2", kSu2, "markers", write_su2)),
+    [] {
+      Format format = of_several_files(mesh("openfoam", "OpenFOAM polyMesh", "", kOpenFoam,
                                             "a folder, named polyMesh: patches, cellZones, faceZones", write_openfoam));
       format.is_folder = true;
       return with_parts(with_linear_wedges(format), write_openfoam_parts, check_openfoam_parts);
     }(),
-    with_wedges(mesh("cgns", "CGNS", ".cgns", kNo, binary(without_edges(without_sets(kAll))),
+    with_wedges(mesh("cgns", "CGNS", ".cgns", binary(without_edges(without_sets(kAll))),
                      "sections and boundary conditions; needs HDF5", kWriteCgns)),
-    with_fields(with_wedges(or_text(
-        mesh("vtk", "legacy VTK", ".vtk", kYes, binary(kAll), "as VTU, binary or text, uncompressed", write_vtk)))),
+    read(with_fields(with_wedges(or_text(
+             mesh("vtk", "legacy VTK", ".vtk", binary(kAll), "as VTU, binary or text, uncompressed", write_vtk)))),
+         told_vtk, read_vtk),
     with_parts(of_several_files(with_fields(with_wedges(or_text(mesh(
-                   "pvtu", "parallel VTU", ".pvtu", kNo, binary(kAll),
+                   "pvtu", "parallel VTU", ".pvtu", binary(kAll),
                    "as VTU, a piece for each part in a folder beside, with ghosts and global numbers", nullptr))))),
                write_pvtu, check_pvtu_target),
-    with_parts(with_fields(with_wedges(mesh("vtkhdf", "VTKHDF", ".vtkhdf", kNo, binary(kAll),
+    with_parts(with_fields(with_wedges(mesh("vtkhdf", "VTKHDF", ".vtkhdf", binary(kAll),
                                             "as VTU, in one file also in parts; needs HDF5", kWriteVtkHdf))),
                kWriteVtkHdfParts),
-    with_surfaces_alone(
-        with_linear_wedges(mesh("medit", "MEDIT", ".mesh", kYes, kNumbersOnly, "text: references", write_medit))),
-    with_surfaces_alone(with_linear_wedges(
-        mesh("meditb", "MEDIT binary", ".meshb", kYes, binary(kNumbersOnly), "references", write_medit_binary))),
-    mesh("netgen", "Netgen", ".vol", kYes, without_sets(kAll), "materials, bcnames, cd2names", write_netgen),
-    of_several_files(mesh("tetgen", "TetGen", ".ele .node", kYes, kNumbersOnly,
-                          "NAME.node, .ele, .face, .edge with markers", write_tetgen)),
+    read(with_surfaces_alone(
+             with_linear_wedges(mesh("medit", "MEDIT", ".mesh", kNumbersOnly, "text: references", write_medit))),
+         told_medit, read_medit),
+    read(with_surfaces_alone(with_linear_wedges(
+             mesh("meditb", "MEDIT binary", ".meshb", binary(kNumbersOnly), "references", write_medit_binary))),
+         told_medit_binary, read_medit_binary),
+    read(mesh("netgen", "Netgen", ".vol", without_sets(kAll), "materials, bcnames, cd2names", write_netgen),
+         told_netgen, read_netgen),
+    read(of_several_files(mesh("tetgen", "TetGen", ".ele .node", kNumbersOnly,
+                               "NAME.node, .ele, .face, .edge with markers", write_tetgen)),
+         told_tetgen, read_tetgen),
 };
 
 bool lists_ending(std::string_view endings, std::string_view ending) {

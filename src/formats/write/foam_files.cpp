@@ -49,6 +49,15 @@ void FoamFiles::file(const std::string& name, std::string_view type,
   target.commit();
 }
 
+void FoamFiles::list(const std::string& name, std::string_view type, std::size_t count,
+                     const std::function<void(TextWriter&)>& write) const {
+  file(name, type, [&](TextWriter& out) {
+    out << std::uint64_t{count} << "\n(\n";
+    write(out);
+    out << ")\n";
+  });
+}
+
 void put_cell_zone(TextWriter& out, const std::string& name, std::span<const std::uint32_t> cells) {
   out.line("{}\n{{\n    type cellZone;\n    cellLabels List<label> {}\n(", name, cells.size());
   for (const std::uint32_t c : cells) out << c << '\n';

@@ -1,7 +1,6 @@
 #pragma once
 
-// What whole meshes and pieces of OpenFOAM have in common: the heads of their files, zones, patches, and the faces
-// between cells.
+// OpenFOAM's files: their heads, zones, patches, and the faces between cells.
 
 #include "formats/containers/text_writer.h"
 #include "formats/parts/mesh_output.h"
@@ -27,11 +26,15 @@ struct FoamFiles {
   RunContext context;
 
   void file(const std::string& name, std::string_view type, const std::function<void(TextWriter&)>& write) const;
+  /// A list of so many values in lines of their own.
+  void list(const std::string& name, std::string_view type, std::size_t count,
+            const std::function<void(TextWriter&)>& write) const;
 };
 
 struct FoamZoneFace {
   std::size_t label;
   bool is_flipped;
+  std::uint64_t label_in_whole;
 };
 void put_cell_zone(TextWriter& out, const std::string& name, std::span<const std::uint32_t> cells);
 void put_face_zone(TextWriter& out, const std::string& name, std::span<const FoamZoneFace> faces);

@@ -1,6 +1,6 @@
 #include "formats/write/msh_writing.h"
 
-#include "base/core/parallel.h"
+#include "base/mesh/periodic_nodes.h"
 #include "formats/parts/legal_names.h"
 
 #include <algorithm>
@@ -13,12 +13,12 @@ namespace octafront::io {
 
 using Kind = NamedSet::Kind;
 
-std::int32_t gmsh_type_of(int dimension, std::size_t nodes) {
+std::int32_t gmsh_type_of(std::size_t dimension, std::size_t nodes) {
   using Types = std::map<std::size_t, std::int32_t>;
   static const std::array<Types, 4> kTypes{Types{{1, 15}}, Types{{2, 1}, {3, 8}},
                                            Types{{3, 2}, {4, 3}, {6, 9}, {8, 16}},
                                            Types{{4, 4}, {5, 7}, {6, 6}, {10, 11}, {13, 19}, {15, 18}}};
-  return kTypes[static_cast<std::size_t>(dimension)].at(nodes);
+  return kTypes[dimension].at(nodes);
 }
 
 std::string unquoted(std::string_view name) {
@@ -65,10 +65,6 @@ std::vector<std::int32_t> physical_tags(const MeshParts& mesh) {
   return tags;
 }
 
-int dimension_of(Kind kind) {
-  return static_cast<int>(std::find(kKindOfDimension.begin(), kKindOfDimension.end(), kind) - kKindOfDimension.begin());
-}
-
 void write_physical_names(TextWriter& out, const MeshParts& mesh, const std::vector<std::int32_t>& tags,
                           bool with_sets) {
   std::vector<std::size_t> named;
@@ -83,95 +79,55 @@ void write_physical_names(TextWriter& out, const MeshParts& mesh, const std::vec
   out << "$EndPhysicalNames\n";
 }
 
-MshEntities::MshEntities(const MeshParts& mesh, const MixedCells& cells)
-    : mesh_(mesh), cells_(cells), physical_(physical_tags(mesh)) {
-  for (std::size_t d = mesh.cells_only() ? 3 : 0; d < 4; ++d) by_[d] = combinations(mesh, kKindOfDimension[d]);
-  make();
-  of_node_.assign(mesh.points(), kNone);
-  for (std::uint32_t e = 0; e < entities_.size(); ++e) entities_[e].box = take_nodes(e).box;
-}
-
-std::vector<std::int32_t> MshEntities::physical_of(const Entity& e) const {
-  std::vector<std::int32_t> tags;
-  for (const std::uint32_t p : by_[static_cast<std::size_t>(e.dimension)].parts[e.slot]) tags.push_back(physical_[p]);
-  return tags;
-}
-
-/// An entity in one group has its tag, others follow behind all.
-void MshEntities::make() {
-  for (int d = 0; d < 4; ++d) {
-    const auto& parts = by_[static_cast<std::size_t>(d)].parts;
-    first_[static_cast<std::size_t>(d)] = entities_.size();
-    std::int32_t next = 1;
-    for (const auto& groups : parts)
-      if (groups.size() == 1) next = std::max(next, physical_[groups[0]] + 1);
-    for (std::uint32_t c = 0; c < parts.size(); ++c)
-      entities_.push_back({d, c, parts[c].size() == 1 ? physical_[parts[c][0]] : next++});
-  }
-  first_[4] = entities_.size();
-}
-
-/// Gives the nodes of an entity to it that no entity before it has. Returns where they all are.
-MshEntities::BoxSum MshEntities::take_nodes(std::uint32_t e) {
-  const auto members = members_of(entities_[e]);
-  return parallel_sum(members.size(), [&](std::size_t begin, std::size_t end) {
-    BoxSum sum;
-    ElementNodes nodes_of(mesh_, cells_);
-    for (const std::uint32_t m : members.subspan(begin, end - begin))
-      nodes_of.put<std::uint64_t>(entities_[e].dimension, element(entities_[e].dimension, m), [&](std::uint64_t tag) {
-        const SharedValue of_node(of_node_[tag - 1]);
-        if (of_node.load() == kNone) of_node.store(e);
-        sum.box.add(mesh_.mesh().points[tag - 1]);
-      });
-    return sum;
-  });
-}
-
-/// The tags of the entities of faces that bound each of tetrahedra.
-std::vector<std::vector<std::int32_t>> MshEntities::bounding() const {
-  std::vector<std::vector<std::int32_t>> of(by_[3].parts.size());
-  if (mesh_.faces() == 0) return of;
-  for (std::size_t f = 0; f < mesh_.faces(); ++f) {
-    const TetIndex t = mesh_.sides()[f].tet;
-    if (t == kNone) continue;
-    const std::int32_t tag = entities_[first_[2] + by_[2].of[f]].tag;
-    auto& list = of[by_[3].of[t]];
-    if (list.empty() || list.back() != tag) list.push_back(tag);
-  }
-  for (auto& list : of) {
-    std::sort(list.begin(), list.end());
-    list.erase(std::unique(list.begin(), list.end()), list.end());
-  }
-  return of;
-}
-
-void MshEntities::write(TextWriter& text, MshNumbers& out) const {
-  text << "$Entities\n";
-  for (std::size_t d = 0; d < 4; ++d) out.put(std::uint64_t{first_[d + 1] - first_[d]});
-  out.end_record();
-  const auto surfaces = bounding();
-  for (const Entity& e : entities_) {
-    const std::vector<std::int32_t> bounded_by = e.dimension == 3 ? surfaces[e.slot] : std::vector<std::int32_t>();
-    out.put(e.tag);
-    out.put(e.box.lo);
-    if (e.dimension > 0) out.put(e.box.hi);
-    const std::vector<std::int32_t> groups = physical_of(e);
-    out.put(std::uint64_t{groups.size()});
-    for (const std::int32_t tag : groups) out.put(tag);
-    if (e.dimension > 0) {
-      out.put(std::uint64_t{bounded_by.size()});
-      for (const std::int32_t tag : bounded_by) out.put(tag);
-    }
-    out.end_record();
-  }
-  out.close("Entities");
-}
-
-std::size_t nodes_of_element(const MeshParts& mesh, const MixedCells& cells, int dimension, std::uint32_t i) {
+std::size_t nodes_of_element(const MeshParts& mesh, const MixedCells& cells, std::size_t dimension, std::uint32_t i) {
   if (dimension == 0) return 1;
   if (dimension == 1) return mesh.nodes_per_edge();
   if (dimension == 2) return i < cells.triangles() ? mesh.nodes_per_face() : cells.nodes_per_quad();
   return cells.nodes_per(cells.kind(i));
+}
+
+PeriodicLinks::PeriodicLinks(const MeshParts& mesh, FunctionRef<std::int32_t(std::size_t)> entity_of)
+    : mesh_(mesh.mesh()) {
+  const auto sorted = [](Triangle t) {
+    std::sort(t.begin(), t.end());
+    return t;
+  };
+  std::vector<Originals> originals(mesh_.periods.size());
+  for (const auto& [period, copy, original] : mesh_.periodic_nodes) originals[period][copy] = original;
+  std::map<Triangle, std::int32_t> entity_at;
+  for (std::size_t f = 0; f < mesh_.boundary.size(); ++f) entity_at[sorted(mesh_.boundary[f])] = entity_of(f);
+  for (std::uint32_t period = 0; period < originals.size(); ++period) {
+    std::array<VertexIndex, 6> room;
+    for (std::size_t f = 0; f < mesh_.boundary.size(); ++f) {
+      Triangle original{};
+      if (!copied(period, mesh_.boundary[f], originals[period], original)) continue;
+      const auto at = entity_at.find(sorted(original));
+      if (at == entity_at.end()) continue;
+      auto& pairs = links_[{static_cast<std::int32_t>(period), entity_of(f), at->second}];
+      for (const VertexIndex v : mesh.face_nodes(f, room))
+        if (const auto o = originals[period].find(v); o != originals[period].end()) pairs.insert(*o);
+      for (const VertexIndex v : mesh.face_nodes(f, room))
+        if (is_own_copy(mesh_, period, v)) pairs.try_emplace(v, v);
+    }
+  }
+}
+
+/// Nodes on the axis of a rotation are copies of themselves.
+bool PeriodicLinks::copied(std::uint32_t period, const Triangle& t, const Originals& original_of,
+                           Triangle& original) const {
+  for (std::size_t i = 0; i < 3; ++i) {
+    const auto at = original_of.find(t[i]);
+    if (at == original_of.end() && !is_own_copy(mesh_, period, t[i])) return false;
+    original[i] = at == original_of.end() ? t[i] : at->second;
+  }
+  return original != t;
+}
+
+std::array<double, 16> PeriodicLinks::matrix_of(std::size_t period) const {
+  const Vec3 t = mesh_.periods[period];
+  std::array<Vec3, 3> r{{{1, 0, 0}, {0, 1, 0}, {0, 0, 1}}};
+  if (!mesh_.period_rotations.empty()) r = mesh_.period_rotations[period];
+  return {r[0].x, r[0].y, r[0].z, t.x, r[1].x, r[1].y, r[1].z, t.y, r[2].x, r[2].y, r[2].z, t.z, 0, 0, 0, 1};
 }
 
 }  // namespace octafront::io

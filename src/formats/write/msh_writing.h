@@ -1,10 +1,10 @@
 #pragma once
 
-// What writers of Gmsh's files share, whole ones and those of parts.
+// What writers of both versions of Gmsh's files share.
 
 #include <octafront/mesh_field.h>
 
-#include "base/core/shared_value.h"
+#include "base/core/function_ref.h"
 #include "formats/containers/text_writer.h"
 #include "formats/parts/mesh_output.h"
 #include "formats/parts/mesh_parts.h"
@@ -13,6 +13,7 @@
 
 #include <array>
 #include <cstring>
+#include <map>
 #include <span>
 #include <string>
 #include <string_view>
@@ -21,7 +22,7 @@
 namespace octafront::io {
 
 /// Gmsh's type of an element of that dimension with so many nodes.
-std::int32_t gmsh_type_of(int dimension, std::size_t nodes);
+std::int32_t gmsh_type_of(std::size_t dimension, std::size_t nodes);
 
 /// Nodes of an element, tags counting from 1, in Gmsh's order. Elements of dimensions 2 and 3 are those of MixedCells.
 class ElementNodes {
@@ -29,7 +30,7 @@ class ElementNodes {
   ElementNodes(const MeshParts& mesh, const MixedCells& cells) : mesh_(mesh), cells_(cells) {}
 
   template <class Tag, class Put>
-  void put(int dimension, std::uint32_t element, const Put& put_tag) {
+  void put(std::size_t dimension, std::uint32_t element, const Put& put_tag) {
     const auto all = [&](std::span<const VertexIndex> nodes) {
       for (const VertexIndex v : nodes) put_tag(static_cast<Tag>(v + Tag{1}));
     };
@@ -69,6 +70,18 @@ class MshNumbers {
     if (!as_text_) return;
     out_ << '\n';
     at_line_start_ = true;
+  }
+  /// Values of a record of their own.
+  template <class... T>
+  void record(T... values) {
+    (put(values), ...);
+    end_record();
+  }
+  /// How many there are, and they.
+  template <class T>
+  void put_list(const std::vector<T>& values) {
+    put(std::uint64_t{values.size()});
+    for (const T value : values) put(value);
   }
   /// Ends the values of a section and writes the line that closes it.
   void close(std::string_view section) { out_.line("{}$End{}", as_text_ ? "" : "\n", section); }
@@ -128,63 +141,34 @@ void write_fields(TextWriter& text, MshNumbers& out, std::span<const MeshField> 
 /// Tags of physical groups: regions, patches and curves keep their numbers, regions of an image their labels; sets
 /// follow.
 std::vector<std::int32_t> physical_tags(const MeshParts& mesh);
-int dimension_of(NamedSet::Kind kind);
 void write_physical_names(TextWriter& out, const MeshParts& mesh, const std::vector<std::int32_t>& tags,
                           bool with_sets);
 
-/// Each combination of groups that elements are in, as an entity of Gmsh.
-class MshEntities {
+/// Nodes of an element of that dimension, by MixedCells.
+std::size_t nodes_of_element(const MeshParts& mesh, const MixedCells& cells, std::size_t dimension, std::uint32_t i);
+
+/// $Periodic: the pairs of nodes of entities of triangles, of which one is the copy of the other.
+class PeriodicLinks {
  public:
-  struct Entity {
-    int dimension;
-    std::uint32_t slot;  ///< its combination
-    std::int32_t tag;
-    Box3 box = {};
-  };
+  /// `entity_of`: per face the tag of its entity.
+  PeriodicLinks(const MeshParts& mesh, FunctionRef<std::int32_t(std::size_t)> entity_of);
 
-  MshEntities(const MeshParts& mesh, const MixedCells& cells);
-
-  const std::vector<Entity>& all() const { return entities_; }  ///< by dimension
-  /// Where those of a dimension begin.
-  std::size_t first(std::size_t dimension) const { return first_[dimension]; }
-  const Combinations& of_dimension(std::size_t dimension) const { return by_[dimension]; }
-  std::span<const std::uint32_t> members_of(const Entity& e) const {
-    return by_[static_cast<std::size_t>(e.dimension)].members[e.slot];
-  }
-  /// Tags of the physical groups that it is in.
-  std::vector<std::int32_t> physical_of(const Entity& e) const;
-  /// The entity of least dimension at each point.
-  std::vector<std::uint32_t> take_entities_of_nodes() { return std::move(of_node_); }
-  const std::vector<std::int32_t>& physical() const { return physical_; }
-  /// $Entities.
-  void write(TextWriter& text, MshNumbers& out) const;
-  /// The element that a member of an entity of that dimension is, or is part of.
-  std::uint32_t element(int dimension, std::uint32_t member) const {
-    return dimension == 3   ? static_cast<std::uint32_t>(cells_.cell_of(member))
-           : dimension == 2 ? static_cast<std::uint32_t>(cells_.face_of(member))
-                            : member;
+  std::size_t size() const { return links_.size(); }
+  /// Calls visit(tag, tag of the original, matrix of the period, pairs {copy, original}) for each.
+  template <class Visit>
+  void for_each(const Visit& visit) const {
+    for (const auto& [link, pairs] : links_)
+      visit(link[1], link[2], matrix_of(static_cast<std::size_t>(link[0])), pairs);
   }
 
  private:
-  struct BoxSum {
-    Box3 box;
-    void operator+=(const BoxSum& other) { box.add(other.box); }
-  };
+  using Originals = std::map<VertexIndex, VertexIndex>;
+  bool copied(std::uint32_t period, const Triangle& t, const Originals& original_of, Triangle& original) const;
+  /// A period as the sixteen numbers of a matrix.
+  std::array<double, 16> matrix_of(std::size_t period) const;
 
-  void make();
-  BoxSum take_nodes(std::uint32_t e);
-  std::vector<std::vector<std::int32_t>> bounding() const;
-
-  const MeshParts& mesh_;
-  const MixedCells& cells_;
-  std::vector<std::int32_t> physical_;  ///< of each part
-  std::array<Combinations, 4> by_;      ///< by dimension
-  std::vector<Entity> entities_;
-  std::array<std::size_t, 5> first_{};
-  std::vector<std::uint32_t> of_node_;
+  const TetMesh& mesh_;
+  std::map<std::array<std::int32_t, 3>, Originals> links_;
 };
-
-/// Nodes of an element of that dimension, by MixedCells.
-std::size_t nodes_of_element(const MeshParts& mesh, const MixedCells& cells, int dimension, std::uint32_t i);
 
 }  // namespace octafront::io

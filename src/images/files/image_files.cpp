@@ -1,9 +1,9 @@
 #include <octafront/error.h>
 
+#include "formats/containers/file_head.h"
 #include "formats/containers/named_file.h"
 #include "formats/containers/scanner.h"
 #include "formats/table/formats.h"
-#include "formats/table/recognize.h"
 #include "images/files/byte_source.h"
 #include "images/files/dicom/series.h"
 #include "images/files/readers.h"
@@ -96,7 +96,7 @@ bool is_of_other_kind(const fs::path& file, std::string_view head) {
   if (!io::well_known_kind(head).empty() || io::is_binary_stl(head, size)) return true;
   try {
     // A raw label image may begin as binary MEDIT does.
-    return io::recognize_surface({file.string(), head}) != io::SurfaceKind::kMeditBinary;
+    return io::recognize_surface({file.string(), head}).info.name != "meditb";
   } catch (const InputError&) {
     return false;
   }
