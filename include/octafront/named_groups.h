@@ -72,9 +72,4 @@ std::string add_group(TetMesh& mesh, const GroupRule& rule);
 /// at the end of one. Does nothing to a mesh that has curves already.
 void add_patch_curves(TetMesh& mesh);
 
-/// Gives `mesh` the interfaces, curves and sets of `before`, an earlier state of it, as far as their faces, edges and
-/// nodes are still there: nodes at the same coordinates. What is lost is said, in sentences. Sets of elements are kept
-/// if no element changed.
-std::vector<std::string> carry_groups(const TetMesh& before, TetMesh& mesh);
-
 }  // namespace octafront

@@ -1091,6 +1091,18 @@ class CommandLine(unittest.TestCase):
         self.assertEqual(groups[0], groups[1])
         self.assertIn("curve", {g["origin"] for g in groups[0]})
 
+    def test_sets_of_elements_outlive_improvement(self):
+        mesh, better = self.dir / "a.vtu", self.dir / "b.vtu"
+        self.run_cli("mesh", SAMPLES / "bracket.stl", "-o", mesh, "--size", 8, "--improve", "none", "--group",
+                     "some=elements:box:0,0,-100,40,60,100", "--group", "within=box:-20,-20,-100,20,20,100")
+        made = self.run_cli("improve", mesh, "-o", better)
+        self.assertNotIn("no longer", made.stdout + made.stderr)
+        names = [sorted(g["name"] for g in json.loads(self.run_cli("check", m, "--json", "-").stdout)["groups"])
+                 for m in (mesh, better)]
+        self.assertEqual(names[0], names[1])
+        self.assertIn("some", names[0])
+        self.assertIn("within", names[0])
+
     def test_a_pipe_is_read_to_its_end(self):
         fifo = self.dir / "fifo"
         os.mkfifo(fifo)

@@ -562,13 +562,13 @@ GivenFit given_fit(const Ground& ground, std::span<const Vertex> vertices) {
 namespace {
 
 /// Per part of walls, by its sets.
-WallBounds bounds_of(const TakenApart& taken, const AdaptRules& rules) {
+WallBounds bounds_of(const TetMesh& mesh, const TakenApart& taken, const AdaptRules& rules) {
   WallBounds bounds{{}, {}, taken.kept, rules.kept.empty() ? rules.frozen : rules.kept};
-  for (const Labels::Label& wall : taken.labels.walls) {
+  for (const std::uint32_t face : taken.labels.walls) {
     double tolerance = rules.tolerance;
     bool strict = rules.strict, is_own = false;
     for (const ToleranceOfSet& own : rules.tolerances) {
-      if (std::find(wall.begin() + 1, wall.end(), own.set) == wall.end()) continue;
+      if (!has_member(mesh.sets[own.set], face)) continue;
       if (is_own && own.tolerance >= tolerance) continue;
       tolerance = own.tolerance, strict = own.strict, is_own = true;
     }
@@ -584,7 +584,7 @@ TakenApart taken_apart(const TetMesh& mesh, const MetricField& metric, const Ada
   const bool any_strict = rules.strict || std::any_of(rules.tolerances.begin(), rules.tolerances.end(),
                                                       [](const ToleranceOfSet& t) { return t.strict; });
   if (!any_strict || rules.tolerance <= 0) return taken;
-  const WallBounds bounds = bounds_of(taken, rules);
+  const WallBounds bounds = bounds_of(mesh, taken, rules);
   std::vector<double> cut_off;
   for (std::size_t p = 0; p < bounds.tolerance.size(); ++p)
     cut_off.push_back(bounds.strict[p] ? kShareOfKink * bounds.tolerance[p] : HUGE_VAL);
@@ -603,7 +603,7 @@ Adapted adapt_mesh(const TetMesh& mesh, const MetricField& metric, const AdaptRu
   if (!rules.frozen.empty()) freeze(taken.parts, rules.frozen);
   hold_sets(taken, mesh, rules.kept_sets);
   const Ground ground(std::move(taken.walls), rules.given);
-  const WallBounds bounds = bounds_of(taken, rules);
+  const WallBounds bounds = bounds_of(mesh, taken, rules);
   const auto least = std::min_element(bounds.tolerance.begin(), bounds.tolerance.end());
   const Guide guide{metric,          ground,     least == bounds.tolerance.end() ? rules.tolerance : *least,
                     stage.context(), taken.kept, bounds.tolerance};
@@ -617,7 +617,7 @@ Adapted adapt_mesh(const TetMesh& mesh, const MetricField& metric, const AdaptRu
   Adapted out;
   mend_walls(taken.parts, ground, rules, adapter, out, bounds, stage);
   out.given = given_fit(ground, taken.parts.vertices);
-  out.mesh = put_together(taken.parts, taken.labels, mesh, out.old_of_new);
+  out.mesh = put_together(taken.parts, taken.labels, mesh, out.from);
   return out;
 }
 

@@ -11,6 +11,7 @@
 #include "adapt/piece/piece.h"
 #include "adapt/schedule/nearness.h"
 #include "base/core/stage.h"
+#include "base/labels/labels.h"
 
 #include <cstdint>
 #include <span>
@@ -67,7 +68,7 @@ GivenFit given_fit(const Ground& ground, std::span<const Vertex> vertices);
 
 struct Adapted {
   TetMesh mesh;
-  std::vector<VertexIndex> old_of_new;  ///< per vertex the one of the input that it is; kNone: new
+  Origins from;  ///< of put_together(): per vertex the one of the input that it is
   /// Of the walls that could change from the smooth surface of the input: those of one tolerance together, the ones
   /// that come nearest to their bound, or beyond it most, first.
   std::vector<Deviation> deviations;

@@ -10,32 +10,6 @@
 namespace octafront::adapt {
 namespace {
 
-/// Numbers of labels, in the order in which they come.
-class Numbering {
- public:
-  std::uint32_t of(const Labels::Label& label) {
-    const auto [at, is_new] = number_.try_emplace(label, static_cast<std::uint32_t>(all_.size()));
-    if (is_new) all_.push_back(label);
-    return at->second;
-  }
-  std::vector<Labels::Label> all() && { return std::move(all_); }
-
- private:
-  std::map<Labels::Label, std::uint32_t> number_;
-  std::vector<Labels::Label> all_;
-};
-
-/// A label of each item of a kind: `own` numbers, then the sets of that kind that it is in.
-std::vector<Labels::Label> labels_of(const TetMesh& mesh, NamedSet::Kind kind, std::vector<std::uint32_t> own) {
-  own.resize(mesh.count(kind), 0);
-  std::vector<Labels::Label> labels(own.size());
-  for (std::size_t i = 0; i < own.size(); ++i) labels[i] = {own[i]};
-  for (std::uint32_t s = 0; s < mesh.sets.size(); ++s)
-    if (mesh.sets[s].kind == kind)
-      for (const std::uint32_t i : mesh.sets[s].members) labels[i].push_back(s);
-  return labels;
-}
-
 class TakerApart {
  public:
   TakerApart(const TetMesh& mesh, double feature_angle, std::span<const Edge> kinks)
@@ -47,10 +21,9 @@ class TakerApart {
     for (VertexIndex v = 0; v < mesh_.points.size(); ++v)
       parts.vertices[v].at = mesh_.points[v], parts.vertices[v].id = v;
     parts.tets = mesh_.tets;
-    Numbering regions;
-    for (const Labels::Label& label : labels_of(mesh_, NamedSet::Kind::kElements, mesh_.region))
-      parts.region.push_back(regions.of(label));
-    out_.labels.regions = std::move(regions).all();
+    Labels regions = labels_of(mesh_, NamedSet::Kind::kElements);
+    parts.region = std::move(regions.of);
+    out_.labels.regions = std::move(regions.like);
     find_walls();
     turn_alike(out_.walls);
     find_lines();
@@ -60,16 +33,14 @@ class TakerApart {
 
  private:
   void find_walls() {
-    std::vector<std::uint32_t> own = mesh_.patch;
-    own.resize(mesh_.boundary.size(), 0);
-    own.insert(own.end(), mesh_.interface_patch.begin(), mesh_.interface_patch.end());
-    const auto labels = labels_of(mesh_, NamedSet::Kind::kFaces, std::move(own));
+    const Labels labels = labels_of(mesh_, NamedSet::Kind::kFaces);
     const std::size_t outer = mesh_.boundary.size();
-    FlatMap<Triangle, std::uint32_t> listed(labels.size());
-    for (std::uint32_t f = 0; f < labels.size(); ++f)
+    FlatMap<Triangle, std::uint32_t> listed(labels.of.size());
+    for (std::uint32_t f = 0; f < labels.of.size(); ++f)
       listed.find_or_add(face_key(f < outer ? mesh_.boundary[f] : mesh_.interfaces[f - outer])) = f;
     const std::vector<HalfFace> across = half_face_neighbors(mesh_.tets, mesh_.points.size());
-    Numbering numbers;
+    // Parts are numbered as they come; the last number is for what is not listed.
+    std::vector<std::uint32_t> number(labels.like.size() + 1, kNone);
     SurfaceMesh& surface = out_.walls.surface;
     surface.points = mesh_.points;
     out_.parts.wall.assign(mesh_.tets.size(), {});
@@ -80,36 +51,54 @@ class TakerApart {
       // What lies across a cut is not here, and not outside either.
       const bool divides = o != kNone && out_.parts.region[o / 4] != out_.parts.region[h / 4];
       if (!f && !divides) continue;
-      const std::uint32_t part = numbers.of(f ? labels[*f] : Labels::Label{kNone});
+      const std::size_t label = f ? labels.of[*f] : labels.like.size();
+      std::uint32_t& part = number[label];
+      if (part == kNone) {
+        part = static_cast<std::uint32_t>(out_.labels.walls.size());
+        out_.labels.walls.push_back(f ? labels.like[label] : kNone);
+      }
       out_.parts.wall[h / 4][h % 4] = (part + 1) | (o == kNone ? kOuter : 0);
       if (o != kNone && h > o) continue;
       surface.triangles.push_back(corners);
       surface.patch.push_back(part);
       out_.walls.outer.push_back(o == kNone);
     }
-    out_.labels.walls = std::move(numbers).all();
   }
 
   void find_lines() {
     Features& lines = out_.walls.lines;
     lines = detect_features(out_.walls.surface, out_.walls.edges, feature_angle_);
-    std::map<Edge, Labels::Label> named;
-    const auto labels = labels_of(mesh_, NamedSet::Kind::kEdges, mesh_.curve);
-    for (std::size_t e = 0; e < labels.size(); ++e)
-      named[sorted_edge(mesh_.curve_edges[e][0], mesh_.curve_edges[e][1])] = labels[e];
+    std::map<Edge, std::uint32_t> named;
+    const Labels labels = labels_of(mesh_, NamedSet::Kind::kEdges);
+    for (std::size_t e = 0; e < labels.of.size(); ++e)
+      named[sorted_edge(mesh_.curve_edges[e][0], mesh_.curve_edges[e][1])] = labels.like[labels.of[e]];
     for (const auto& [edge, label] : named) lines.edges.push_back(edge);
     lines.edges.insert(lines.edges.end(), kinks_.begin(), kinks_.end());
     std::sort(lines.edges.begin(), lines.edges.end());
     lines.edges.erase(std::unique(lines.edges.begin(), lines.edges.end()), lines.edges.end());
-    std::vector<Labels::Label> label(lines.edges.size(), Labels::Label{kNone});
+    std::vector<std::uint32_t> label(lines.edges.size(), kNone);
     for (std::size_t e = 0; e < label.size(); ++e)
       if (const auto at = named.find(lines.edges[e]); at != named.end()) label[e] = at->second;
+    add_crossings();
     name_paths(label);
     mark_touching_edges();
   }
 
+  /// Where a curve leaves a wall, or goes through it, both stay.
+  void add_crossings() {
+    std::vector<std::uint8_t> is_wall(mesh_.points.size(), 0);
+    for (const Triangle& t : out_.walls.surface.triangles)
+      for (const VertexIndex v : t) is_wall[v] = 1;
+    Features& lines = out_.walls.lines;
+    for (const Edge& e : lines.edges) {
+      if (std::ranges::binary_search(out_.walls.edges.edges, e)) continue;
+      for (const VertexIndex v : e)
+        if (is_wall[v]) lines.corners.push_back(v);
+    }
+  }
+
   /// Lines of edges of one label.
-  void name_paths(const std::vector<Labels::Label>& label) {
+  void name_paths(const std::vector<std::uint32_t>& label) {
     Features& lines = out_.walls.lines;
     // Of kinks nothing is known but where they are: each is straight by itself.
     const auto is_kink = [&](std::uint32_t e) {
@@ -170,11 +159,6 @@ class TakerApart {
   std::vector<VertexIndex> touching_;
 };
 
-/// Puts what belongs to an item, by its label, into the sets of a kind.
-void add_to_sets(std::vector<NamedSet>& sets, const Labels::Label& label, std::uint32_t item) {
-  for (std::size_t k = 1; k < label.size(); ++k) sets[label[k]].members.push_back(item);
-}
-
 }  // namespace
 
 TakenApart take_apart(const TetMesh& mesh, double feature_angle, std::span<const Edge> kinks) {
@@ -217,21 +201,16 @@ void hold_sets(TakenApart& taken, const TetMesh& mesh, std::span<const std::uint
         case NamedSet::Kind::kElements:
           for (const VertexIndex v : mesh.tets[m]) vertices[v].frozen = true;
       }
-  const auto is_kept = [&](const Labels::Label& wall) {
-    return std::any_of(wall.begin() + 1, wall.end(),
-                       [&](std::uint32_t set) { return std::find(sets.begin(), sets.end(), set) != sets.end(); });
+  const auto is_in = [&](std::uint32_t set, std::uint32_t face) {
+    return mesh.sets[set].kind == NamedSet::Kind::kFaces && has_member(mesh.sets[set], face);
   };
-  for (const Labels::Label& wall : taken.labels.walls) taken.kept.push_back(is_kept(wall));
+  for (const std::uint32_t face : taken.labels.walls)
+    taken.kept.push_back(std::ranges::any_of(sets, [&](std::uint32_t set) { return is_in(set, face); }));
 }
 
-TetMesh put_together(const Parts& parts, const Labels& labels, const TetMesh& before,
-                     std::vector<VertexIndex>& old_of_new) {
+TetMesh put_together(const Parts& parts, const PartLabels& labels, const TetMesh& before, Origins& from) {
   TetMesh mesh;
-  mesh.region_names = before.region_names, mesh.region_labels = before.region_labels;
-  mesh.patch_names = before.patch_names, mesh.curve_names = before.curve_names;
-  mesh.patch_labels = before.patch_labels, mesh.curve_labels = before.curve_labels;
-  mesh.sets = before.sets;
-  for (NamedSet& s : mesh.sets) s.members.clear();
+  from = {};
   // Vertices: those that were there in their order, then new ones.
   std::vector<VertexIndex> order, number(parts.vertices.size(), kNone);
   std::vector<std::uint8_t> used(parts.vertices.size(), 0);
@@ -241,69 +220,43 @@ TetMesh put_together(const Parts& parts, const Labels& labels, const TetMesh& be
     if (used[v]) order.push_back(v);
   std::stable_sort(order.begin(), order.end(),
                    [&](VertexIndex a, VertexIndex b) { return parts.vertices[a].id < parts.vertices[b].id; });
-  std::vector<VertexIndex> now(before.points.size(), kNone);
-  old_of_new.clear();
   for (VertexIndex k = 0; k < order.size(); ++k) {
     const Vertex& v = parts.vertices[order[k]];
     number[order[k]] = k;
     mesh.points.push_back(v.at);
-    old_of_new.push_back(v.id);
-    if (v.id != kNone) now[v.id] = k;
+    from.nodes.push_back(v.id);
   }
-  const bool has_regions = !before.region.empty();
-  const bool has_patches = !before.patch.empty();
-  struct Face {
-    Triangle corners;
-    std::uint32_t part;
-  };
-  std::vector<Face> inner;
+  // Each wall inside comes twice, once from each side: the first one is listed.
+  FlatSet<Triangle> listed;
+  std::vector<std::uint32_t> inner;
   for (TetIndex t = 0; t < parts.tets.size(); ++t) {
     Tet c = parts.tets[t];
     for (VertexIndex& v : c) v = number[v];
     mesh.tets.push_back(c);
-    const Labels::Label& region = labels.regions[parts.region[t]];
-    if (has_regions) mesh.region.push_back(region[0]);
-    add_to_sets(mesh.sets, region, t);
+    from.tets.push_back(labels.regions[parts.region[t]]);
     for (int i = 0; i < 4; ++i) {
       const Wall w = parts.wall[t][i];
       if (w == 0) continue;
-      const std::uint32_t part = (w & ~kOuter) - 1;
+      const std::uint32_t like = labels.walls[(w & ~kOuter) - 1];
       if ((w & kOuter) != 0) {
-        add_to_sets(mesh.sets, labels.walls[part], static_cast<std::uint32_t>(mesh.boundary.size()));
-        mesh.boundary.push_back(face_of(c, i));
-        if (has_patches) mesh.patch.push_back(labels.walls[part][0]);
-      } else if (labels.walls[part][0] != kNone) {
-        inner.push_back({face_of(c, i), part});
+        mesh.boundary.push_back(face_of(c, i)), from.faces.push_back(like);
+      } else if (like != kNone && listed.insert(face_key(face_of(c, i)))) {
+        mesh.interfaces.push_back(face_of(c, i)), inner.push_back(like);
       }
     }
   }
-  // Each inner wall comes twice, once from each side: the first one is listed.
-  FlatSet<Triangle> listed(inner.size());
-  for (const Face& f : inner) {
-    if (!listed.insert(face_key(f.corners))) continue;
-    add_to_sets(mesh.sets, labels.walls[f.part],
-                static_cast<std::uint32_t>(mesh.boundary.size() + mesh.interfaces.size()));
-    mesh.interfaces.push_back(f.corners);
-    if (!before.interface_patch.empty()) mesh.interface_patch.push_back(labels.walls[f.part][0]);
-  }
+  from.faces.insert(from.faces.end(), inner.begin(), inner.end());
   std::vector<Parts::Line> lines = parts.lines;
   for (Parts::Line& l : lines) l.edge = sorted_edge(number[l.edge[0]], number[l.edge[1]]);
   std::sort(lines.begin(), lines.end(), [](const auto& a, const auto& b) { return a.edge < b.edge; });
   for (const Parts::Line& l : lines) {
-    const Labels::Label& label = l.path == Parts::kStays
-                                     ? labels.staying.at(sorted_edge(old_of_new[l.edge[0]], old_of_new[l.edge[1]]))
-                                     : labels.paths[l.path];
-    if (label[0] == kNone) continue;
-    add_to_sets(mesh.sets, label, static_cast<std::uint32_t>(mesh.curve_edges.size()));
-    mesh.curve_edges.push_back(l.edge);
-    if (!before.curve.empty()) mesh.curve.push_back(label[0]);
+    const std::uint32_t like = l.path == Parts::kStays
+                                   ? labels.staying.at(sorted_edge(from.nodes[l.edge[0]], from.nodes[l.edge[1]]))
+                                   : labels.paths[l.path];
+    if (like != kNone) mesh.curve_edges.push_back(l.edge), from.edges.push_back(like);
   }
-  for (std::size_t s = 0; s < mesh.sets.size(); ++s) {
-    if (mesh.sets[s].kind == NamedSet::Kind::kNodes)
-      for (const std::uint32_t v : before.sets[s].members)
-        if (v < now.size() && now[v] != kNone) mesh.sets[s].members.push_back(now[v]);
-    std::sort(mesh.sets[s].members.begin(), mesh.sets[s].members.end());
-  }
+  inherit(mesh, before, from);
+  mesh.source.clear(), mesh.face_layers.clear();  // of the faces that were
   return mesh;
 }
 

@@ -7,6 +7,7 @@
 
 #include "adapt/ground/ground.h"
 #include "adapt/piece/piece.h"
+#include "base/labels/labels.h"
 
 #include <cstdint>
 #include <map>
@@ -15,19 +16,19 @@
 
 namespace octafront::adapt {
 
-/// What the numbers of parts stand for. Each is a list: its number in the mesh, then the sets that it is in.
-struct Labels {
-  using Label = std::vector<std::uint32_t>;
-  std::vector<Label> walls;       ///< patch first; kNone: between regions and not listed
-  std::vector<Label> regions;     ///< region first
-  std::vector<Label> paths;       ///< of each line: curve first; kNone: a feature alone
-  std::map<Edge, Label> staying;  ///< of edges that must not be divided (Parts::kStays), as the mesh numbers them
+/// What the numbers of parts stand for: each for all that the item of the mesh has which is named here.
+struct PartLabels {
+  std::vector<std::uint32_t> walls;       ///< faces; kNone: between regions and not listed
+  std::vector<TetIndex> regions;          ///< tets
+  std::vector<std::uint32_t> paths;       ///< edges of curves; kNone: a feature alone
+  std::map<Edge, std::uint32_t> staying;  ///< the same of edges that must not be divided (Parts::kStays), as the mesh
+                                          ///< numbers their vertices
 };
 
 struct TakenApart {
   Parts parts;  ///< vertices without metrics
   Walls walls;
-  Labels labels;
+  PartLabels labels;
   std::vector<std::uint8_t> kept;  ///< per part of walls: its triangles stay; empty: none do
 };
 
@@ -41,9 +42,8 @@ TakenApart take_apart(const TetMesh& mesh, double feature_angle, std::span<const
 /// with all that is between their vertices.
 void hold_sets(TakenApart& taken, const TetMesh& mesh, std::span<const std::uint32_t> sets);
 
-/// The mesh again, with the names of `before`: vertices that were there in their order, new ones behind. `old_of_new`
-/// gets the number in `before` of each vertex; kNone: new.
-TetMesh put_together(const Parts& parts, const Labels& labels, const TetMesh& before,
-                     std::vector<VertexIndex>& old_of_new);
+/// The mesh again, with all that hangs on `before`: vertices that were there in their order, new ones behind. `from`:
+/// of vertices those that they are, of all else an item of the same labels.
+TetMesh put_together(const Parts& parts, const PartLabels& labels, const TetMesh& before, Origins& from);
 
 }  // namespace octafront::adapt

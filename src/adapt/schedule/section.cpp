@@ -5,6 +5,8 @@
 
 #include <algorithm>
 #include <array>
+#include <numeric>
+#include <type_traits>
 
 namespace octafront::adapt {
 namespace {
@@ -30,63 +32,17 @@ std::vector<std::uint8_t> vertices_of(const TetMesh& mesh, std::span<const std::
   return marked;
 }
 
-/// Those of a list that lie in the section: `number` has the new numbers of vertices.
+/// The numbers of the faces or edges of a list that lie between vertices which have numbers, counted from `first` on;
+/// of faces those that are some of `faces`.
 template <class Item>
-void take_items(const std::vector<Item>& all, const std::vector<std::uint32_t>& parts,
-                const std::vector<VertexIndex>& number, const FlatSet<Triangle>* faces, std::vector<Item>& items,
-                std::vector<std::uint32_t>& item_parts, std::vector<std::uint32_t>& ids) {
+void take_items(const std::vector<Item>& all, std::uint32_t first, const std::vector<VertexIndex>& number,
+                const FlatSet<Triangle>* faces, std::vector<std::uint32_t>& ids) {
   for (std::uint32_t i = 0; i < all.size(); ++i) {
-    Item item = all[i];
+    const Item& item = all[i];
     if (std::any_of(item.begin(), item.end(), [&](VertexIndex v) { return number[v] == kNone; })) continue;
-    for (VertexIndex& v : item) v = number[v];
     if constexpr (std::is_same_v<Item, Triangle>)
       if (!faces->contains(face_key(item))) continue;
-    items.push_back(item);
-    if (!parts.empty()) item_parts.push_back(parts[i]);
-    ids.push_back(i);
-  }
-}
-
-FlatSet<Triangle> faces_of(std::span<const Tet> tets) {
-  FlatSet<Triangle> faces(2 * tets.size());
-  for (const Tet& t : tets)
-    for (int i = 0; i < 4; ++i) faces.insert(face_key(face_of(t, i)));
-  return faces;
-}
-
-/// The members of a set in the section: `ids` are the numbers, ascending, of items that it has.
-void take_members(const std::vector<std::uint32_t>& members, std::span<const std::uint32_t> ids, std::uint32_t from,
-                  std::uint32_t to, std::vector<std::uint32_t>& taken) {
-  for (const std::uint32_t m : members) {
-    if (m < from) continue;
-    const auto at = std::lower_bound(ids.begin(), ids.end(), m - from);
-    if (at != ids.end() && *at == m - from) taken.push_back(to + static_cast<std::uint32_t>(at - ids.begin()));
-  }
-}
-
-void take_sets(const TetMesh& whole, Section& section) {
-  section.mesh.sets = whole.sets;
-  const auto outer = static_cast<std::uint32_t>(whole.boundary.size());
-  for (NamedSet& set : section.mesh.sets) {
-    const std::vector<std::uint32_t> members = std::move(set.members);
-    set.members.clear();
-    switch (set.kind) {
-      case NamedSet::Kind::kNodes:
-        take_members(members, section.vertex, 0, 0, set.members);
-        break;
-      case NamedSet::Kind::kElements:
-        take_members(members, section.tet, 0, 0, set.members);
-        break;
-      case NamedSet::Kind::kEdges:
-        take_members(members, section.line, 0, 0, set.members);
-        break;
-      case NamedSet::Kind::kFaces: {
-        const auto split = std::lower_bound(members.begin(), members.end(), outer);
-        take_members({members.begin(), split}, section.outer, 0, 0, set.members);
-        take_members({split, members.end()}, section.inner, outer, static_cast<std::uint32_t>(section.outer.size()),
-                     set.members);
-      }
-    }
+    ids.push_back(first + i);
   }
 }
 
@@ -98,7 +54,6 @@ class Slots {
   Slots(std::size_t count, std::span<const std::uint32_t> out, std::span<const std::uint32_t> back)
       : old_count_(static_cast<std::uint32_t>(count)),
         count_(static_cast<std::uint32_t>(count - out.size() + back.size())),
-        out_(out.begin(), out.end()),
         had_(back.begin(), back.end()),
         id_(had_) {
     std::vector<std::uint32_t> kept(back.begin(), back.end()), holes;
@@ -116,13 +71,11 @@ class Slots {
     for (std::uint32_t& id : id_) id = now(id);
   }
 
-  std::uint32_t count() const { return count_; }
+  std::uint32_t old_count() const { return old_count_; }
   /// Of the i-th one that comes back.
   std::uint32_t of(std::size_t i) const { return id_[i]; }
   /// The number that it had; kNone: it is new.
   std::uint32_t had(std::size_t i) const { return had_[i]; }
-  /// Whether the item of this number was taken out, by its number before.
-  bool was_out(std::uint32_t old) const { return std::binary_search(out_.begin(), out_.end(), old); }
   /// Of one that stays, by the number that it had.
   std::uint32_t now(std::uint32_t old) const { return old < count_ || old >= old_count_ ? old : moved_[old - count_]; }
   bool any_moved() const {
@@ -145,55 +98,62 @@ class Slots {
 
  private:
   std::uint32_t old_count_, count_;
-  std::vector<std::uint32_t> out_, had_;
+  std::vector<std::uint32_t> had_;
   std::vector<std::uint32_t> id_;     ///< of those that come back
   std::vector<std::uint32_t> moved_;  ///< of those from count_ on; kNone: gone
 };
 
 class Splicer {
  public:
-  Splicer(TetMesh& whole, const Section& section, const TetMesh& made, std::span<const VertexIndex> made_old)
-      : whole_(whole), section_(section), made_(made), made_old_(made_old), stays_(made.points.size(), 0) {
+  Splicer(TetMesh& whole, const Section& section, const TetMesh& made, const Origins& from)
+      : whole_(whole), section_(section), made_(made), from_(from), stays_(made.points.size(), 0) {
     for (VertexIndex v = 0; v < stays_.size(); ++v)
-      stays_[v] = made_old_[v] != kNone && made_.points[v] == section_.mesh.points[made_old_[v]];
-    out_vertex_.assign(section_.vertex.size(), 0);
-    for (TetIndex t = 0; t < section_.tet.size(); ++t)
-      if (section_.loose[t])
-        for (const VertexIndex v : section_.mesh.tets[t]) out_vertex_[v] = 1;
+      stays_[v] = from.nodes[v] != kNone && made_.points[v] == section_.mesh.points[from.nodes[v]];
+    out_vertex_.assign(section_.of.nodes.size(), 0);
+    for (TetIndex t = 0; t < section_.of.tets.size(); ++t) {
+      if (!section_.loose[t]) continue;
+      const Tet& c = section_.mesh.tets[t];
+      for (const VertexIndex v : c) out_vertex_[v] = 1;
+      for (int i = 0; i < 4; ++i) out_face_.insert(face_key(face_of(c, i)));
+    }
   }
 
   SplicedIds run() {
+    const TetMesh before = whole_;
+    const auto outer = static_cast<std::uint32_t>(before.boundary.size());
+    const std::span<const std::uint32_t> faces(section_.of.faces);
+    const std::size_t split = section_.mesh.boundary.size(), made_split = made_.boundary.size();
     const Slots vertices = slots_of_vertices();
     const Slots tets = slots_of_tets();
-    FlatSet<Triangle> faces(2 * section_.tet.size());
-    for (TetIndex t = 0; t < section_.tet.size(); ++t)
-      if (section_.loose[t])
-        for (int i = 0; i < 4; ++i) faces.insert(face_key(face_of(section_.mesh.tets[t], i)));
-    const auto is_out = [&](const auto& item) {
-      if constexpr (std::tuple_size_v<std::decay_t<decltype(item)>> == 3) return faces.contains(face_key(item));
-      return std::all_of(item.begin(), item.end(), [&](VertexIndex v) { return out_vertex_[v] != 0; });
-    };
-    const Slots outer = slots_of_items(whole_.boundary, section_.mesh.boundary, section_.outer, made_.boundary, is_out);
-    const Slots inner =
-        slots_of_items(whole_.interfaces, section_.mesh.interfaces, section_.inner, made_.interfaces, is_out);
+    const Slots out = slots_of_items(whole_.boundary, section_.mesh.boundary, faces.first(split), 0, made_.boundary);
+    const Slots in =
+        slots_of_items(whole_.interfaces, section_.mesh.interfaces, faces.subspan(split), outer, made_.interfaces);
     const Slots lines =
-        slots_of_items(whole_.curve_edges, section_.mesh.curve_edges, section_.line, made_.curve_edges, is_out);
-    place_sets(vertices, tets, outer, inner, lines);
-    SplicedIds ids = ids_of(vertices, tets);
+        slots_of_items(whole_.curve_edges, section_.mesh.curve_edges, section_.of.edges, 0, made_.curve_edges);
     vertices.place(whole_.points, [&](std::size_t i, Vec3& p) { p = made_.points[i]; });
-    place_items(whole_.tets, whole_.region, made_.tets, made_.region, tets, vertices);
-    place_items(whole_.boundary, whole_.patch, made_.boundary, made_.patch, outer, vertices);
-    place_items(whole_.interfaces, whole_.interface_patch, made_.interfaces, made_.interface_patch, inner, vertices);
-    place_items(whole_.curve_edges, whole_.curve, made_.curve_edges, made_.curve, lines, vertices);
+    place_items(whole_.tets, made_.tets, tets, vertices);
+    place_items(whole_.boundary, made_.boundary, out, vertices);
+    place_items(whole_.interfaces, made_.interfaces, in, vertices);
+    place_items(whole_.curve_edges, made_.curve_edges, lines, vertices);
+    Origins from{origins(vertices, 0, from_.nodes, section_.of.nodes),
+                 origins(lines, 0, from_.edges, section_.of.edges),
+                 origins(out, 0, std::span(from_.faces).first(made_split), section_.of.faces),
+                 origins(tets, 0, from_.tets, section_.of.tets)};
+    const auto inner = origins(in, outer, std::span(from_.faces).subspan(made_split), section_.of.faces);
+    from.faces.insert(from.faces.end(), inner.begin(), inner.end());
+    inherit(whole_, before, from);
     whole_.source.clear(), whole_.face_layers.clear();
-    return ids;
+    return ids_of(vertices, tets, std::move(from.nodes));
   }
 
  private:
+  bool is_out(const Edge& edge) const { return out_vertex_[edge[0]] && out_vertex_[edge[1]]; }
+  bool is_out(const Triangle& face) const { return out_face_.contains(face_key(face)); }
+
   /// The corners as the section numbers them; of an item with a corner that is new or moved kNone.
   template <class Item>
   Item as_before(Item item) const {
-    for (VertexIndex& v : item) v = stays_[v] ? made_old_[v] : kNone;
+    for (VertexIndex& v : item) v = stays_[v] ? from_.nodes[v] : kNone;
     return item;
   }
   template <class Item>
@@ -205,30 +165,30 @@ class Splicer {
   Slots slots_of_vertices() const {
     std::vector<std::uint32_t> out, back;
     for (VertexIndex v = 0; v < out_vertex_.size(); ++v)
-      if (out_vertex_[v]) out.push_back(section_.vertex[v]);
-    for (const VertexIndex v : made_old_) back.push_back(v == kNone ? kNone : section_.vertex[v]);
+      if (out_vertex_[v]) out.push_back(section_.of.nodes[v]);
+    for (const VertexIndex v : from_.nodes) back.push_back(v == kNone ? kNone : section_.of.nodes[v]);
     return {whole_.points.size(), out, back};
   }
 
-  Slots slots_of_tets() {
+  Slots slots_of_tets() const {
     std::vector<std::uint32_t> out, back;
-    for (TetIndex t = 0; t < section_.tet.size(); ++t)
-      if (section_.loose[t]) out.push_back(section_.tet[t]);
-    for (const TetIndex t : same_tets(section_.mesh, made_, made_old_))
-      back.push_back(t == kNone ? kNone : section_.tet[t]);
+    for (TetIndex t = 0; t < section_.of.tets.size(); ++t)
+      if (section_.loose[t]) out.push_back(section_.of.tets[t]);
+    for (const TetIndex t : same_tets(section_.mesh, made_, from_.nodes))
+      back.push_back(t == kNone ? kNone : section_.of.tets[t]);
     return {whole_.tets.size(), out, back};
   }
 
-  /// Of faces or edges.
-  template <class Item, class IsOut>
+  /// Of faces or edges, `ids` less `first`.
+  template <class Item>
   Slots slots_of_items(const std::vector<Item>& whole, const std::vector<Item>& before,
-                       std::span<const std::uint32_t> ids, const std::vector<Item>& now, const IsOut& is_out) const {
+                       std::span<const std::uint32_t> ids, std::uint32_t first, const std::vector<Item>& now) const {
     FlatMap<Item, std::uint32_t> known(before.size());
     std::vector<std::uint32_t> out, back;
     for (std::size_t i = 0; i < before.size(); ++i) {
       if (!is_out(before[i])) continue;
-      known.find_or_add(key_of(before[i])) = ids[i];
-      out.push_back(ids[i]);
+      known.find_or_add(key_of(before[i])) = ids[i] - first;
+      out.push_back(ids[i] - first);
     }
     for (const Item& item : now) {
       const Item key = key_of(as_before(item));
@@ -239,8 +199,8 @@ class Splicer {
   }
 
   template <class Item>
-  void place_items(std::vector<Item>& items, std::vector<std::uint32_t>& parts, const std::vector<Item>& made,
-                   const std::vector<std::uint32_t>& made_parts, const Slots& slots, const Slots& vertices) const {
+  void place_items(std::vector<Item>& items, const std::vector<Item>& made, const Slots& slots,
+                   const Slots& vertices) const {
     const auto old_count = items.size();
     slots.place(items, [&](std::size_t i, Item& item) {
       // What is as it was keeps the order of its corners, too.
@@ -248,7 +208,6 @@ class Splicer {
       item = made[i];
       for (VertexIndex& v : item) v = kNew + v;
     });
-    if (!parts.empty()) slots.place(parts, [&](std::size_t i, std::uint32_t& part) { part = made_parts[i]; });
     const bool moved = vertices.any_moved();
     const auto renumber = [&](Item& item) {
       for (VertexIndex& v : item) v = v >= kNew ? vertices.of(v - kNew) : vertices.now(v);
@@ -262,61 +221,26 @@ class Splicer {
   Item key_in_whole(const Item& made) const {
     Item item = as_before(made);
     for (VertexIndex& v : item)
-      if (v != kNone) v = section_.vertex[v];
+      if (v != kNone) v = section_.of.nodes[v];
     return key_of(item);
   }
 
-  void place_sets(const Slots& vertices, const Slots& tets, const Slots& outer, const Slots& inner,
-                  const Slots& lines) {
-    for (std::size_t s = 0; s < whole_.sets.size(); ++s) {
-      NamedSet& set = whole_.sets[s];
-      const NamedSet& has = made_.sets[s];
-      switch (set.kind) {
-        case NamedSet::Kind::kNodes:
-          replace_members(set, has, vertices);
-          break;
-        case NamedSet::Kind::kElements:
-          replace_members(set, has, tets);
-          break;
-        case NamedSet::Kind::kEdges:
-          replace_members(set, has, lines);
-          break;
-        case NamedSet::Kind::kFaces:
-          replace_faces(set, has, outer, inner);
-      }
-      std::sort(set.members.begin(), set.members.end());
-    }
-  }
-  static void replace_members(NamedSet& set, const NamedSet& has, const Slots& slots) {
-    std::vector<std::uint32_t> members;
-    for (const std::uint32_t m : set.members)
-      if (!slots.was_out(m)) members.push_back(slots.now(m));
-    for (const std::uint32_t m : has.members) members.push_back(slots.of(m));
-    set.members = std::move(members);
-  }
-  /// Faces of interfaces count on behind those of the boundary.
-  void replace_faces(NamedSet& set, const NamedSet& has, const Slots& outer, const Slots& inner) const {
-    const auto old_outer = static_cast<std::uint32_t>(whole_.boundary.size());
-    const auto made_outer = static_cast<std::uint32_t>(made_.boundary.size());
-    std::vector<std::uint32_t> members;
-    for (const std::uint32_t m : set.members) {
-      const bool is_outer = m < old_outer;
-      const std::uint32_t id = is_outer ? m : m - old_outer;
-      if (!(is_outer ? outer : inner).was_out(id))
-        members.push_back(is_outer ? outer.now(id) : outer.count() + inner.now(id));
-    }
-    for (const std::uint32_t m : has.members)
-      members.push_back(m < made_outer ? outer.of(m) : outer.count() + inner.of(m - made_outer));
-    set.members = std::move(members);
+  /// Of the items of the whole, counted from `first` on: what stays comes from itself, what was made by way of the
+  /// section.
+  static std::vector<std::uint32_t> origins(const Slots& slots, std::uint32_t first,
+                                            std::span<const std::uint32_t> from,
+                                            const std::vector<std::uint32_t>& of_section) {
+    std::vector<std::uint32_t> all(slots.old_count());
+    std::iota(all.begin(), all.end(), first);
+    slots.place(all, [&](std::size_t i, std::uint32_t& id) { id = from[i] == kNone ? kNone : of_section[from[i]]; });
+    return all;
   }
 
-  SplicedIds ids_of(const Slots& vertices, const Slots& tets) const {
+  SplicedIds ids_of(const Slots& vertices, const Slots& tets, std::vector<VertexIndex> old_of_new) const {
     SplicedIds ids;
-    ids.old_of_new.resize(whole_.points.size());
-    ids.old_tet_of_new.resize(whole_.tets.size());
-    for (VertexIndex v = 0; v < ids.old_of_new.size(); ++v) ids.old_of_new[v] = v;
-    for (TetIndex t = 0; t < ids.old_tet_of_new.size(); ++t) ids.old_tet_of_new[t] = t;
-    vertices.place(ids.old_of_new, [&](std::size_t i, VertexIndex& v) { v = vertices.had(i); });
+    ids.old_of_new = std::move(old_of_new);
+    ids.old_tet_of_new.resize(tets.old_count());
+    std::iota(ids.old_tet_of_new.begin(), ids.old_tet_of_new.end(), 0u);
     tets.place(ids.old_tet_of_new, [&](std::size_t i, TetIndex& t) { t = tets.had(i); });
     ids.moved_vertices = vertices.moved(), ids.moved_tets = tets.moved();
     return ids;
@@ -327,9 +251,10 @@ class Splicer {
   TetMesh& whole_;
   const Section& section_;
   const TetMesh& made_;
-  std::span<const VertexIndex> made_old_;
+  const Origins& from_;
   std::vector<std::uint8_t> stays_;       ///< per vertex of `made`: it was there, at the same place
   std::vector<std::uint8_t> out_vertex_;  ///< per vertex of the section: it is one of a loose tet
+  FlatSet<Triangle> out_face_;            ///< those of loose tets
 };
 
 }  // namespace
@@ -344,34 +269,27 @@ Section section_of(const TetMesh& whole, std::vector<std::uint8_t>& chosen, int 
   std::vector<std::uint8_t> taken = chosen;
   for (int k = 0; k < kLayersOfGround; ++k) grow_layer(whole, taken, near);
   Section section;
+  Origins& of = section.of;
   std::vector<VertexIndex> number(whole.points.size(), kNone);
   for (VertexIndex v = 0; v < near.size(); ++v) {
     if (!near[v]) continue;
-    number[v] = static_cast<VertexIndex>(section.vertex.size());
-    section.vertex.push_back(v);
-    section.mesh.points.push_back(whole.points[v]);
+    number[v] = static_cast<VertexIndex>(of.nodes.size());
+    of.nodes.push_back(v);
     section.frozen.push_back(frozen[v]);
   }
+  FlatSet<Triangle> faces;
   for (TetIndex t = 0; t < whole.tets.size(); ++t) {
     if (!taken[t]) continue;
-    Tet c = whole.tets[t];
-    const bool loose = std::any_of(c.begin(), c.end(), [&](VertexIndex v) { return !frozen[v]; });
-    for (VertexIndex& v : c) v = number[v];
-    section.mesh.tets.push_back(c);
-    if (!whole.region.empty()) section.mesh.region.push_back(whole.region[t]);
-    section.tet.push_back(t);
-    section.loose.push_back(loose);
+    const Tet& c = whole.tets[t];
+    of.tets.push_back(t);
+    section.loose.push_back(std::any_of(c.begin(), c.end(), [&](VertexIndex v) { return !frozen[v]; }));
+    for (int i = 0; i < 4; ++i) faces.insert(face_key(face_of(c, i)));
   }
-  const FlatSet<Triangle> faces = faces_of(section.mesh.tets);
-  TetMesh& part = section.mesh;
-  take_items(whole.boundary, whole.patch, number, &faces, part.boundary, part.patch, section.outer);
-  take_items(whole.interfaces, whole.interface_patch, number, &faces, part.interfaces, part.interface_patch,
-             section.inner);
-  take_items(whole.curve_edges, whole.curve, number, nullptr, part.curve_edges, part.curve, section.line);
-  part.region_names = whole.region_names, part.region_labels = whole.region_labels;
-  part.patch_names = whole.patch_names, part.curve_names = whole.curve_names;
-  part.patch_labels = whole.patch_labels, part.curve_labels = whole.curve_labels;
-  take_sets(whole, section);
+  take_items(whole.boundary, 0, number, &faces, of.faces);
+  take_items(whole.interfaces, static_cast<std::uint32_t>(whole.boundary.size()), number, &faces, of.faces);
+  take_items(whole.curve_edges, 0, number, nullptr, of.edges);
+  number.assign(number.size(), kNone);
+  section.mesh = part_of(whole, of, number);
   return section;
 }
 
@@ -394,8 +312,8 @@ TetMesh closed_part(const TetMesh& mesh, std::span<const std::uint8_t> loose) {
   return part;
 }
 
-SplicedIds splice(TetMesh& whole, const Section& section, const TetMesh& made, std::span<const VertexIndex> made_old) {
-  return Splicer(whole, section, made, made_old).run();
+SplicedIds splice(TetMesh& whole, const Section& section, const TetMesh& made, const Origins& from) {
+  return Splicer(whole, section, made, from).run();
 }
 
 std::vector<TetIndex> same_tets(const TetMesh& before, const TetMesh& now, std::span<const VertexIndex> old_of_new) {

@@ -5,6 +5,8 @@
 
 #include <octafront/tet_mesh.h>
 
+#include "base/labels/labels.h"
+
 #include <cstdint>
 #include <span>
 #include <vector>
@@ -15,11 +17,9 @@ namespace octafront::adapt {
 /// boundary face of it.
 struct Section {
   TetMesh mesh;
-  std::vector<VertexIndex> vertex;                ///< of each vertex its number in the whole mesh
-  std::vector<TetIndex> tet;                      ///< likewise
-  std::vector<std::uint32_t> outer, inner, line;  ///< of boundary faces, interfaces and curve edges
-  std::vector<std::uint8_t> frozen;               ///< per vertex: not all elements around it may change
-  std::vector<std::uint8_t> loose;                ///< per tet: it has a vertex that is not frozen
+  Origins of;                        ///< of each item its number in the whole mesh
+  std::vector<std::uint8_t> frozen;  ///< per vertex: not all elements around it may change
+  std::vector<std::uint8_t> loose;   ///< per tet: it has a vertex that is not frozen
 };
 
 /// The `chosen` tets and `layers` more of them, by vertices, are those that may change; a vertex is frozen unless all
@@ -41,8 +41,8 @@ struct SplicedIds {
 /// what is unchanged inside. What is new fills the numbers of what has gone, then comes behind; where less is new than
 /// has gone, the last of those that stay fill the numbers that are left.
 ///
-/// `made`: of the section's mesh, with `made_old` telling for each vertex its number there, kNone: new.
-SplicedIds splice(TetMesh& whole, const Section& section, const TetMesh& made, std::span<const VertexIndex> made_old);
+/// `made`: of the section's mesh, `from` as put_together() tells it.
+SplicedIds splice(TetMesh& whole, const Section& section, const TetMesh& made, const Origins& from);
 
 /// Per tet of `now` the one of `before` that has the same corners at the same places, kNone: there is none.
 std::vector<TetIndex> same_tets(const TetMesh& before, const TetMesh& now, std::span<const VertexIndex> old_of_new);

@@ -27,17 +27,28 @@ void keep_numbered(std::vector<Vec3>& points, std::vector<VertexIndex>& number) 
   points.resize(next);
 }
 
+void renumber_named_nodes(TetMesh& mesh, const std::vector<VertexIndex>& number) {
+  for (WideCell& cell : mesh.wide_cells)
+    for (VertexIndex& v : cell.nodes)
+      if (v != kNone) v = number[v];
+  for (WideFace& face : mesh.wide_faces)
+    for (VertexIndex& v : face.nodes) v = number[v];
+  for (SplitFace& face : mesh.split_faces)
+    for (VertexIndex& v : face.nodes) v = number[v];
+  std::erase_if(mesh.split_faces,
+                [](const SplitFace& face) { return std::ranges::find(face.nodes, kNone) != face.nodes.end(); });
+  for (auto& [period, copy, original] : mesh.periodic_nodes) copy = number[copy], original = number[original];
+  std::erase_if(mesh.periodic_nodes, [](const auto& pair) { return pair[1] == kNone || pair[2] == kNone; });
+  std::sort(mesh.periodic_nodes.begin(), mesh.periodic_nodes.end());
+}
+
 void renumber_vertices(TetMesh& mesh, const std::vector<VertexIndex>& number) {
   renumber(mesh.tets, number);
   renumber(mesh.mid_nodes, number);
   renumber(mesh.boundary, number);
   renumber(mesh.interfaces, number);
   renumber(mesh.curve_edges, number);
-  for (WideCell& cell : mesh.wide_cells)
-    for (VertexIndex& v : cell.nodes)
-      if (v != kNone) v = number[v];
-  for (WideFace& face : mesh.wide_faces)
-    for (VertexIndex& v : face.nodes) v = number[v];
+  renumber_named_nodes(mesh, number);
   for (NamedSet& set : mesh.sets) {
     if (set.kind != NamedSet::Kind::kNodes) continue;
     for (std::uint32_t& v : set.members) v = number[v];

@@ -21,6 +21,10 @@ void renumber(Rows& rows, const std::vector<VertexIndex>& number) {
   });
 }
 
+/// Replaces the nodes that wedges, pyramids, quadrilaterals, doubled faces and pairs name by themselves. Doubled faces
+/// and pairs with a node whose number is kNone go.
+void renumber_named_nodes(TetMesh& mesh, const std::vector<VertexIndex>& number);
+
 /// Replaces each vertex in all arrays of a mesh but `points`; vertices whose number is kNone leave the sets of nodes.
 void renumber_vertices(TetMesh& mesh, const std::vector<VertexIndex>& number);
 

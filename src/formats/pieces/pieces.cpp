@@ -4,6 +4,7 @@
 
 #include "base/core/parallel.h"
 #include "base/core/shared_value.h"
+#include "base/labels/labels.h"
 
 #include <algorithm>
 #include <array>
@@ -11,38 +12,6 @@
 #include <fmt/core.h>
 
 namespace octafront::io {
-namespace {
-
-/// The items of `all` that are in the ascending `members`, as places in `all`, which is ascending up to `own` and from
-/// there on. O(the smaller one, up to a logarithm).
-std::vector<std::uint32_t> places_of(std::span<const std::uint32_t> members, std::span<const std::uint32_t> all,
-                                     std::size_t own) {
-  std::vector<std::uint32_t> places;
-  for (const auto& [begin, end] : {std::pair(std::size_t{0}, own), std::pair(own, all.size())}) {
-    const auto stretch = all.subspan(begin, end - begin);
-    if (stretch.size() < members.size()) {
-      for (std::size_t i = 0; i < stretch.size(); ++i)
-        if (std::binary_search(members.begin(), members.end(), stretch[i]))
-          places.push_back(static_cast<std::uint32_t>(begin + i));
-    } else {
-      for (const std::uint32_t m : members)
-        if (const auto at = std::lower_bound(stretch.begin(), stretch.end(), m); at != stretch.end() && *at == m)
-          places.push_back(static_cast<std::uint32_t>(begin + static_cast<std::size_t>(at - stretch.begin())));
-    }
-  }
-  return places;
-}
-
-template <class T>
-std::vector<T> of_items(const std::vector<T>& values, std::span<const std::uint32_t> items) {
-  std::vector<T> out;
-  if (values.empty()) return out;
-  out.reserve(items.size());
-  for (const std::uint32_t i : items) out.push_back(values[i]);
-  return out;
-}
-
-}  // namespace
 
 Pieces::Pieces(const MeshParts& whole, Division division, std::span<const MeshField> fields)
     : whole_(whole), mesh_(whole.mesh()), cells_(whole), division_(std::move(division)), fields_(fields) {
@@ -186,17 +155,29 @@ Piece Pieces::piece(std::uint32_t number, bool with_ghosts) {
   tets.insert(tets.end(), ghosts.begin(), ghosts.end());
   const auto faces = whole_.faces() == 0 ? std::vector<std::uint32_t>() : items_of(own_faces_[number], faces_, ghosts);
   const auto edges = whole_.edges() == 0 ? std::vector<std::uint32_t>() : items_of(own_edges_[number], edges_, ghosts);
-  number_points(piece, tets);
-  add_tets(piece, tets);
-  add_faces(piece, faces);
-  add_edges(piece, edges);
-  add_sets(piece, tets, faces, edges);
+  const std::vector<VertexIndex> points = points_of(tets);
+  piece.mesh = part_of(mesh_, {points, edges, faces, tets}, local_);
+  if (!whole_.second_order()) piece.mesh.mid_nodes.clear();
+  if (whole_.wide_cells().empty()) piece.mesh.wide_cells.clear();
+  if (whole_.wide_faces().empty()) piece.mesh.wide_faces.clear();
+  piece.point_ids.assign(points.begin(), points.end());
+  piece.point_part = of_items(point_part_, points);
+  piece.last_points = static_cast<std::size_t>(
+      points.end() - std::lower_bound(points.begin(), points.end(), static_cast<VertexIndex>(whole_.points())));
+  piece.tet_part = of_items(division_.part, tets);
+  piece.cell_ids.resize(tets.size());
+  parallel_for(tets.size(), [&](std::size_t i) { piece.cell_ids[i] = cells_.cell_of(tets[i]); });
+  for (const std::uint32_t f : faces) piece.face_ids.push_back(cells_.face_of(f));
+  for (const std::uint32_t e : edges) {
+    piece.edge_part.push_back(division_.part[edge_tet_[e]]);
+    piece.edge_ids.push_back(e);
+  }
   add_fields(piece, tets);
-  for (const GlobalId v : piece.point_ids) local_[v] = kNone;
   return piece;
 }
 
-void Pieces::number_points(Piece& piece, std::span<const TetIndex> tets) {
+/// Ascending.
+std::vector<VertexIndex> Pieces::points_of(std::span<const TetIndex> tets) {
   std::vector<VertexIndex> points;
   const auto take = [&](std::span<const VertexIndex> nodes) {
     for (const VertexIndex v : nodes) {
@@ -209,109 +190,9 @@ void Pieces::number_points(Piece& piece, std::span<const TetIndex> tets) {
     take(mesh_.tets[t]);
     if (whole_.second_order()) take(mesh_.mid_nodes[t]);
   }
+  for (const VertexIndex v : points) local_[v] = kNone;
   parallel_sort(points);
-  for (std::size_t i = 0; i < points.size(); ++i) local_[points[i]] = static_cast<VertexIndex>(i);
-  piece.point_ids.assign(points.begin(), points.end());
-  piece.mesh.points = of_items(mesh_.points, points);
-  piece.point_part = of_items(point_part_, points);
-  piece.last_points = static_cast<std::size_t>(
-      points.end() - std::lower_bound(points.begin(), points.end(), static_cast<VertexIndex>(whole_.points())));
-}
-
-void Pieces::add_tets(Piece& piece, std::span<const TetIndex> tets) const {
-  TetMesh& mesh = piece.mesh;
-  mesh.tets.resize(tets.size());
-  piece.cell_ids.resize(tets.size());
-  if (whole_.second_order()) mesh.mid_nodes.resize(tets.size());
-  parallel_for(tets.size(), [&](std::size_t i) {
-    for (std::size_t k = 0; k < 4; ++k) mesh.tets[i][k] = local_[mesh_.tets[tets[i]][k]];
-    for (std::size_t k = 0; k < 6 && whole_.second_order(); ++k)
-      mesh.mid_nodes[i][k] = local_[mesh_.mid_nodes[tets[i]][k]];
-    piece.cell_ids[i] = cells_.cell_of(tets[i]);
-  });
-  mesh.region = of_items(mesh_.region, tets);
-  mesh.region_names = mesh_.region_names;
-  mesh.region_labels = mesh_.region_labels;
-  piece.tet_part = of_items(division_.part, tets);
-  if (whole_.wide_cells().empty()) return;
-  for (std::size_t i = 0; i < tets.size(); ++i) {
-    const auto& wide = mesh_.wide_cells;
-    const auto at = std::lower_bound(wide.begin(), wide.end(), tets[i],
-                                     [](const WideCell& cell, TetIndex t) { return cell.first < t; });
-    if (at == wide.end() || at->first != tets[i]) continue;
-    WideCell cell{static_cast<TetIndex>(i), at->tet_count, at->nodes};
-    for (VertexIndex& v : cell.nodes)
-      if (v != kNone) v = local_[v];
-    mesh.wide_cells.push_back(cell);
-  }
-}
-
-void Pieces::add_faces(Piece& piece, const std::vector<std::uint32_t>& faces) const {
-  TetMesh& mesh = piece.mesh;
-  const std::size_t all = mesh_.boundary.size();
-  const auto inside = static_cast<std::size_t>(
-      std::lower_bound(faces.begin(), faces.end(), static_cast<std::uint32_t>(all)) - faces.begin());
-  for (std::size_t i = 0; i < faces.size(); ++i) {
-    Triangle t = whole_.face(faces[i]);
-    for (VertexIndex& v : t) v = local_[v];
-    (i < inside ? mesh.boundary : mesh.interfaces).push_back(t);
-    piece.face_ids.push_back(cells_.face_of(faces[i]));
-  }
-  const std::span<const std::uint32_t> outer = std::span(faces).first(inside);
-  mesh.patch = of_items(mesh_.patch, outer);
-  mesh.source = of_items(mesh_.source, outer);
-  mesh.patch_names = mesh_.patch_names;
-  mesh.patch_labels = mesh_.patch_labels;
-  mesh.face_layers = of_items(mesh_.face_layers, faces);
-  if (!mesh_.interface_patch.empty())
-    for (std::size_t i = inside; i < faces.size(); ++i)
-      mesh.interface_patch.push_back(mesh_.interface_patch[faces[i] - all]);
-  if (whole_.wide_faces().empty()) return;
-  for (std::size_t i = 0; i < inside; ++i) {
-    const auto& wide = mesh_.wide_faces;
-    const auto at = std::lower_bound(wide.begin(), wide.end(), faces[i],
-                                     [](const WideFace& face, std::uint32_t f) { return face.first < f; });
-    if (at == wide.end() || at->first != faces[i]) continue;
-    WideFace face{static_cast<std::uint32_t>(i), at->nodes};
-    for (VertexIndex& v : face.nodes) v = local_[v];
-    mesh.wide_faces.push_back(face);
-  }
-}
-
-void Pieces::add_edges(Piece& piece, const std::vector<std::uint32_t>& edges) const {
-  TetMesh& mesh = piece.mesh;
-  for (const std::uint32_t e : edges) {
-    const auto& [a, b] = mesh_.curve_edges[e];
-    mesh.curve_edges.push_back({local_[a], local_[b]});
-    piece.edge_part.push_back(division_.part[edge_tet_[e]]);
-    piece.edge_ids.push_back(e);
-  }
-  mesh.curve = of_items(mesh_.curve, edges);
-  mesh.curve_names = mesh_.curve_names;
-  mesh.curve_labels = mesh_.curve_labels;
-}
-
-void Pieces::add_sets(Piece& piece, std::span<const TetIndex> tets, const std::vector<std::uint32_t>& faces,
-                      const std::vector<std::uint32_t>& edges) const {
-  for (const NamedSet& set : mesh_.sets) {
-    NamedSet of_piece{set.name, set.kind, {}};
-    switch (set.kind) {
-      case NamedSet::Kind::kNodes:
-        for (const std::uint32_t v : set.members)
-          if (local_[v] != kNone) of_piece.members.push_back(local_[v]);
-        break;
-      case NamedSet::Kind::kEdges:
-        of_piece.members = places_of(set.members, edges, edges.size());
-        break;
-      case NamedSet::Kind::kFaces:
-        of_piece.members = places_of(set.members, faces, faces.size());
-        break;
-      case NamedSet::Kind::kElements:
-        of_piece.members = places_of(set.members, tets, piece.own_tets);
-        break;
-    }
-    piece.mesh.sets.push_back(std::move(of_piece));
-  }
+  return points;
 }
 
 void Pieces::add_fields(Piece& piece, std::span<const TetIndex> tets) const {

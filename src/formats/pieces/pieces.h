@@ -72,12 +72,7 @@ class Pieces {
   void complete_wide_cells(std::vector<TetIndex>& tets) const;
   std::vector<std::uint32_t> items_of(std::span<const std::uint32_t> own, const std::vector<Item>& by_tet,
                                       std::span<const TetIndex> ghosts) const;
-  void number_points(Piece& piece, std::span<const TetIndex> tets);
-  void add_tets(Piece& piece, std::span<const TetIndex> tets) const;
-  void add_faces(Piece& piece, const std::vector<std::uint32_t>& faces) const;
-  void add_edges(Piece& piece, const std::vector<std::uint32_t>& edges) const;
-  void add_sets(Piece& piece, std::span<const TetIndex> tets, const std::vector<std::uint32_t>& faces,
-                const std::vector<std::uint32_t>& edges) const;
+  std::vector<VertexIndex> points_of(std::span<const TetIndex> tets);
   void add_fields(Piece& piece, std::span<const TetIndex> tets) const;
 
   const MeshParts& whole_;

@@ -10,6 +10,7 @@
 #include "base/geometry/self_intersection.h"
 #include "base/geometry/spatial_order.h"
 #include "base/mesh/index_range.h"
+#include "base/mesh/renumber.h"
 #include "base/mesh/tet_key.h"
 
 #include <algorithm>
@@ -508,7 +509,7 @@ void MeshOfPieces::rewind() {
   origin_.came.assign(tets_.size(), 1);
 }
 
-TetMesh MeshOfPieces::release(Features* features) {
+TetMesh MeshOfPieces::release(Features* features, std::vector<VertexIndex>* numbers) {
   origin_ = {}, home_ = {}, remembers_ = false;
   TetMesh mesh = std::move(rest_);
   // By their numbers along a curve, the keys of elements say where in space they lie.
@@ -531,6 +532,8 @@ TetMesh MeshOfPieces::release(Features* features) {
     number[v] = used++;
   }
   points_.resize(used);
+  drop_removed_triangles(mesh);
+  renumber_vertices(mesh, number);
   mesh.points = std::exchange(points_, {});
   is_used = {};
   if (!comm_.alone()) sort_among_ranks(along.size());
@@ -550,9 +553,8 @@ TetMesh MeshOfPieces::release(Features* features) {
   }
   region_ = {};
   if (shares_ == Tets::kAll) gather_tets(mesh, comm_);
-  drop_removed_triangles(mesh);
-  renumber_faces(mesh, number);
   if (features) *features = renumbered(number);
+  if (numbers) *numbers = std::move(number);
   return mesh;
 }
 

@@ -99,8 +99,9 @@ class MeshOfPieces {
 
   /// The mesh, compacted: vertices in the order they came in, without unused ones, new ones behind; tets in order of
   /// space; boundary triangles by their numbers, the last ones in the place of those that went. Features, if asked for,
-  /// get the numbers of this mesh. A share is a stretch of the tets, those of rank 0 first.
-  TetMesh release(Features* features);
+  /// get the numbers of this mesh, and `numbers` says where each vertex went, kNone: nowhere. A share is a stretch of
+  /// the tets, those of rank 0 first.
+  TetMesh release(Features* features, std::vector<VertexIndex>* numbers = nullptr);
 
  private:
   friend class SlotShuffle;  ///< of the tests

@@ -13,6 +13,7 @@
 #include "improve/passes/fewest_poor.h"
 #include "improve/passes/passes.h"
 #include "improve/pieces/pieces.h"
+#include "improve/schedule/kept_labels.h"
 
 #include <algorithm>
 #include <atomic>
@@ -526,9 +527,12 @@ bool improve_mesh(TetMesh& mesh, const BoundaryInput* input, const ImproveOption
   check_improve_options(options);
   const bool is_empty = tets == Tets::kAll && mesh.tets.empty();
   if (options.level == ImproveOptions::Level::kOff || is_empty) return false;
-  mesh.wide_cells.clear();  // edits know of tetrahedra alone
-  mesh.wide_faces.clear();
-  mesh.face_layers.clear();
+  const KeptLabels labels(mesh);
+  std::vector<VertexIndex> numbers;
+  if (mesh.tets.empty() && tets == Tets::kAll) {
+    labels.put_back(mesh, numbers);
+    return false;
+  }
   const bool moves = input && options.move_boundary && options.level != ImproveOptions::Level::kPaper;
   Improvement improvement(std::move(mesh), input, moves, options, stage, tets);
   MeshOfPieces& pieces = improvement.mesh();
@@ -549,16 +553,20 @@ bool improve_mesh(TetMesh& mesh, const BoundaryInput* input, const ImproveOption
   improvement.explain();
   stage.count("runs with places of the boundary frozen", retries);
   const bool moved = moves && retries < kMostRetries && pieces.moved_boundary();
-  mesh = pieces.release(moved ? features : nullptr);
+  mesh = pieces.release(moved ? features : nullptr, labels.needs_numbers() ? &numbers : nullptr);
+  labels.put_back(mesh, numbers);
   return moved;
 }
 
 void relieve_mesh(TetMesh& mesh, const ImproveOptions& options, const Stage& stage) {
   if (options.level == ImproveOptions::Level::kOff || mesh.tets.empty()) return;
   if (worst_score(mesh, options.objective) >= kComfort) return;
+  const KeptLabels labels(mesh);
   Improvement improvement(std::move(mesh), nullptr, false, options, stage);
   relieve_places(improvement);
-  mesh = improvement.mesh().release(nullptr);
+  std::vector<VertexIndex> numbers;
+  mesh = improvement.mesh().release(nullptr, labels.needs_numbers() ? &numbers : nullptr);
+  labels.put_back(mesh, numbers);
 }
 
 }  // namespace octafront

@@ -5,6 +5,8 @@
 #include "base/core/flat_map.h"
 #include "base/geometry/measures.h"
 #include "base/geometry/predicates.h"
+#include "base/labels/labels.h"
+#include "base/mesh/adjacency.h"
 #include "base/mesh/edge_table.h"
 #include "base/mesh/face_table.h"
 
@@ -28,8 +30,8 @@ class BridgeDivider {
   explicit BridgeDivider(TetMesh& mesh) : mesh_(mesh), on_wall_(mesh.points.size(), 0), fixed_(mesh.tets.size(), 0) {
     for (const auto* faces : {&mesh.boundary, &mesh.interfaces})
       for (const Triangle& f : *faces) {
-        walls_.insert(face_key(f));
-        for (std::size_t i = 0; i < 3; ++i) lines_.insert(sorted_edge(f[i], f[(i + 1) % 3])), on_wall_[f[i]] = 1;
+        add_wall(f);
+        for (const VertexIndex v : f) on_wall_[v] = 1;
       }
     for (const Edge& e : mesh.curve_edges) lines_.insert(sorted_edge(e[0], e[1]));
     for (const WideCell& cell : mesh.wide_cells)
@@ -44,7 +46,10 @@ class BridgeDivider {
       if (!fixed_[t] && is_bridge(t)) bridges.push_back(t);
     found.had = bridges.size();
     if (bridges.empty()) return found;
+    TetMesh before;  // as to its elements
+    before.region = mesh_.region, before.wide_cells = mesh_.wide_cells, before.sets = mesh_.sets;
     const auto first_new = static_cast<VertexIndex>(mesh_.points.size());
+    add_borders();
     connect();
     for (std::size_t k = 0; k < bridges.size(); ++k) {
       if (k % kCheckBridgesEvery == 0) stage.check();
@@ -55,7 +60,7 @@ class BridgeDivider {
       for (VertexIndex v = first_new; v < mesh_.points.size(); ++v) move(v);
     }
     found.vertices = mesh_.points.size() - first_new;
-    add_to_sets();
+    inherit(mesh_, before, NamedSet::Kind::kElements, original_);
     return found;
   }
 
@@ -63,6 +68,19 @@ class BridgeDivider {
   bool is_bridge(TetIndex t) const {
     const Tet& c = mesh_.tets[t];
     return std::all_of(c.begin(), c.end(), [&](VertexIndex v) { return on_wall_[v] != 0; });
+  }
+
+  /// Faces between elements of other labels stay, too.
+  void add_borders() {
+    const Labels labels = labels_of(mesh_, NamedSet::Kind::kElements);
+    if (labels.like.size() < 2) return;
+    const std::vector<HalfFace> across = half_face_neighbors(mesh_.tets, mesh_.points.size());
+    for (HalfFace h = 0; h < across.size(); ++h)
+      if (across[h] != kNone && labels.of[h / 4] != labels.of[across[h] / 4]) add_wall(corners_of(mesh_.tets, h));
+  }
+  void add_wall(const Triangle& f) {
+    walls_.insert(face_key(f));
+    for (std::size_t i = 0; i < 3; ++i) lines_.insert(sorted_edge(f[i], f[(i + 1) % 3]));
   }
 
   void connect() {
@@ -146,7 +164,6 @@ class BridgeDivider {
   void add(TetIndex t, const Tet& made) {
     const auto number = static_cast<TetIndex>(mesh_.tets.size());
     mesh_.tets.push_back(made);
-    if (!mesh_.region.empty()) mesh_.region.push_back(mesh_.region[t]);
     fixed_.push_back(0);
     original_.push_back(original_[t]);
     for (const VertexIndex v : made) around_[v].push_back(number);
@@ -173,23 +190,10 @@ class BridgeDivider {
         }
   }
 
-  /// What is divided stays in its sets with all parts.
-  void add_to_sets() {
-    for (NamedSet& set : mesh_.sets) {
-      if (set.kind != NamedSet::Kind::kElements) continue;
-      const std::size_t count = set.members.size();
-      for (TetIndex t = had_; t < mesh_.tets.size(); ++t)
-        if (std::binary_search(set.members.begin(), set.members.begin() + static_cast<std::ptrdiff_t>(count),
-                               original_[t]))
-          set.members.push_back(t);
-    }
-  }
-
   TetMesh& mesh_;
   std::vector<std::uint8_t> on_wall_, fixed_;
   FlatSet<Triangle> walls_;
   FlatSet<Edge> lines_;
-  TetIndex had_ = static_cast<TetIndex>(mesh_.tets.size());
   std::vector<TetIndex> original_;  ///< per element the one of the mesh that came which it is a part of
   std::vector<std::vector<TetIndex>> around_;
 };

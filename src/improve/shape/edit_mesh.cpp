@@ -7,7 +7,9 @@
 #include "base/core/parallel.h"
 #include "base/core/validate.h"
 #include "base/geometry/predicates.h"
+#include "base/labels/labels.h"
 #include "base/mesh/index_range.h"
+#include "base/mesh/renumber.h"
 
 #include <algorithm>
 #include <array>
@@ -33,12 +35,6 @@ void grow(std::vector<Item>& items, std::size_t size, const std::type_identity_t
 }
 
 }  // namespace
-
-void renumber_faces(TetMesh& mesh, const std::vector<VertexIndex>& new_of_old) {
-  for (std::vector<Triangle>* faces : {&mesh.boundary, &mesh.interfaces})
-    for (Triangle& t : *faces)
-      for (VertexIndex& v : t) v = new_of_old[v];
-}
 
 Groups<> order_by_key(const std::vector<Tet>& tets, std::size_t vertices) {
   static_assert(kNone == kNoOwner);
@@ -177,6 +173,8 @@ TetMesh EditMesh::release() {
       new_of_old[v] = static_cast<VertexIndex>(mesh.points.size());
       mesh.points.push_back(points_[v]);
     }
+  drop_removed_triangles(mesh);
+  renumber_vertices(mesh, new_of_old);
   complex_.across = std::vector<HalfFace>();
   shapes_ = std::vector<Shape>();
   const Groups<> order = order_by_key(complex_.tets, points_.size());
@@ -188,23 +186,25 @@ TetMesh EditMesh::release() {
     if (had_regions_) mesh.region[k] = region_[kept[k]];
   });
   complex_.tets = std::vector<Tet>();
-  drop_removed_triangles(mesh);
-  renumber_faces(mesh, new_of_old);
   return mesh;
 }
 
 void drop_removed_triangles(TetMesh& mesh) {
-  const auto last_into = [](auto& list, std::size_t t) {
-    if (list.empty()) return;
-    list[t] = list.back();
-    list.pop_back();
-  };
-  for (std::size_t t = mesh.boundary.size(); t-- > 0;) {
+  const std::size_t outer = mesh.boundary.size();
+  std::vector<std::uint32_t> faces(outer + mesh.interfaces.size());
+  std::iota(faces.begin(), faces.end(), 0u);
+  std::vector<std::uint32_t> left(faces.begin(), faces.begin() + static_cast<std::ptrdiff_t>(outer));
+  for (std::size_t t = outer; t-- > 0;) {
     if (mesh.boundary[t][0] != kNone) continue;
-    last_into(mesh.boundary, t);
-    last_into(mesh.patch, t);
-    last_into(mesh.source, t);
+    left[t] = left.back();
+    left.pop_back();
   }
+  if (left.size() == outer) return;
+  const TetMesh before = mesh;
+  mesh.boundary.clear();
+  for (const std::uint32_t f : left) mesh.boundary.push_back(before.boundary[f]);
+  left.insert(left.end(), faces.begin() + static_cast<std::ptrdiff_t>(outer), faces.end());
+  inherit(mesh, before, NamedSet::Kind::kFaces, left);
 }
 
 void EditMesh::move(VertexIndex v, Vec3 to, std::span<const HalfFace> star_faces, const ShapeBatch& shapes) {

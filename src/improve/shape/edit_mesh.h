@@ -135,7 +135,7 @@ class EditMesh {
   std::vector<std::uint8_t> on_boundary_;
   std::vector<VertexIndex> free_points_;  ///< numbers of no vertex, behind those that were taken
   std::vector<TetIndex> numbers_;         ///< of the tets there
-  TetMesh rest_;                          ///< boundary, patches, sources, names: carried through; no tets, no points
+  TetMesh rest_;                          ///< all else: carried through; no tets, no points
   bool had_regions_ = false;
   std::optional<Taken> taken_;
 };
@@ -164,9 +164,8 @@ void for_each_shape(std::span<const Vec3> points, std::span<const Tet> tets, Imp
 
 /// The numbers of the tets that are there in ascending order of their keys.
 Groups<> order_by_key(const std::vector<Tet>& tets, std::size_t vertices);
-/// Of boundary and interfaces.
-void renumber_faces(TetMesh& mesh, const std::vector<VertexIndex>& new_of_old);
-/// Boundary triangles whose first corner is kNone; the last ones come in their place.
+/// Boundary triangles whose first corner is kNone; the last ones come in their place, with all that hangs on them. Of a
+/// mesh without points and tets.
 void drop_removed_triangles(TetMesh& mesh);
 
 /// Of its elements.

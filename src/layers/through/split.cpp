@@ -1,5 +1,7 @@
 #include "base/core/flat_map.h"
 #include "base/geometry/measures.h"
+#include "base/labels/labels.h"
+#include "base/mesh/renumber.h"
 #include "layers/through/through.h"
 
 #include <algorithm>
@@ -95,34 +97,12 @@ DividedFaces divided(const std::vector<Triangle>& faces, const Nodes& nodes) {
   return made;
 }
 
-/// A value per item becomes that of the item it was; none stay none.
-template <class T>
-void inherit(std::vector<T>& values, const std::vector<std::uint32_t>& parent) {
-  if (values.empty()) return;
-  std::vector<T> made;
-  made.reserve(parent.size());
-  for (const std::uint32_t p : parent) made.push_back(values[p]);
-  values = std::move(made);
-}
-
-void divide_faces(TetMesh& mesh, const Nodes& nodes) {
-  DividedFaces outer = divided(mesh.boundary, nodes), inner = divided(mesh.interfaces, nodes);
-  std::vector<std::uint32_t> both = outer.parent;
-  for (const std::uint32_t p : inner.parent) both.push_back(p + static_cast<std::uint32_t>(mesh.boundary.size()));
-  inherit(mesh.face_layers, both);
-  inherit(mesh.patch, outer.parent);
-  inherit(mesh.source, outer.parent);
-  inherit(mesh.interface_patch, inner.parent);
-  mesh.boundary = std::move(outer.faces);
-  mesh.interfaces = std::move(inner.faces);
-}
-
 void divide_surface(SurfaceMesh& surface, std::vector<std::uint32_t>& parent, const Nodes& nodes) {
   DividedFaces made = divided(surface.triangles, nodes);
-  inherit(surface.patch, made.parent);
-  inherit(surface.source, made.parent);
-  inherit(surface.sides, made.parent);
-  inherit(parent, made.parent);
+  surface.patch = of_items(surface.patch, made.parent);
+  surface.source = of_items(surface.source, made.parent);
+  surface.sides = of_items(surface.sides, made.parent);
+  parent = of_items(parent, made.parent);
   surface.triangles = std::move(made.faces);
 }
 
@@ -141,23 +121,33 @@ void divide_edges(std::vector<Edge>& edges, const Nodes& nodes) {
   edges = std::move(made);
 }
 
-void divide_tets(TetMesh& mesh, const Nodes& nodes, SplitSpans& done) {
-  std::vector<Tet> tets;
-  std::vector<std::uint32_t> parent;
-  tets.reserve(2 * mesh.tets.size());
-  for (TetIndex t = 0; t < mesh.tets.size(); ++t) {
-    const std::size_t before = tets.size();
-    nodes.divide(mesh.tets[t], [&](const Tet& part) {
-      tets.push_back(part);
-      parent.push_back(t);
+/// Elements and faces, and what hangs on them.
+void divide_mesh(TetMesh& mesh, const Nodes& nodes, SplitSpans& done) {
+  const TetMesh before = std::exchange(mesh, {});
+  mesh.points = before.points;
+  Origins from;
+  from.nodes.resize(nodes.first());
+  std::iota(from.nodes.begin(), from.nodes.end(), VertexIndex{0});
+  from.nodes.resize(mesh.points.size(), kNone);
+  mesh.tets.reserve(2 * before.tets.size());
+  for (TetIndex t = 0; t < before.tets.size(); ++t) {
+    const std::size_t first = mesh.tets.size();
+    nodes.divide(before.tets[t], [&](const Tet& part) {
+      mesh.tets.push_back(part);
+      from.tets.push_back(t);
     });
-    const std::size_t parts = tets.size() - before;
+    const std::size_t parts = mesh.tets.size() - first;
     if (parts == 1) continue;
     ++done.elements;
     done.made += parts;
   }
-  inherit(mesh.region, parent);
-  mesh.tets = std::move(tets);
+  DividedFaces outer = divided(before.boundary, nodes), inner = divided(before.interfaces, nodes);
+  from.faces = std::move(outer.parent);
+  for (const std::uint32_t p : inner.parent)
+    from.faces.push_back(p + static_cast<std::uint32_t>(before.boundary.size()));
+  mesh.boundary = std::move(outer.faces);
+  mesh.interfaces = std::move(inner.faces);
+  inherit(mesh, before, from);
 }
 
 /// What is left to be divided, from the nodes of the last pass to the high side.
@@ -194,12 +184,6 @@ std::vector<VertexIndex> numbering(const TetMesh& mesh, const SurfaceMesh& surfa
   return number;
 }
 
-template <class Items>
-void renumber(Items& items, const std::vector<VertexIndex>& number) {
-  for (auto& item : items)
-    for (VertexIndex& v : item) v = number[v];
-}
-
 void put_in_order(TetMesh& mesh, SurfaceMesh& surface, Features& features, SplitSpans& done) {
   const std::vector<VertexIndex> number = numbering(mesh, surface);
   std::vector<Vec3> points(mesh.points.size());
@@ -208,9 +192,7 @@ void put_in_order(TetMesh& mesh, SurfaceMesh& surface, Features& features, Split
     points[number[v]] = mesh.points[v];
     level[number[v]] = done.level[v];
   }
-  renumber(mesh.tets, number);
-  renumber(mesh.boundary, number);
-  renumber(mesh.interfaces, number);
+  renumber_vertices(mesh, number);
   renumber(surface.triangles, number);
   VertexIndex last = 0;
   for (const Triangle& t : surface.triangles) last = std::max({last, t[0], t[1], t[2]});
@@ -236,8 +218,7 @@ SplitSpans split_spans(TetMesh& mesh, std::vector<Span> spans, std::uint32_t lay
     context.check();
     SplitSpans pass;
     const Nodes nodes(mesh.points, spans, parts);
-    divide_tets(mesh, nodes, pass);
-    divide_faces(mesh, nodes);
+    divide_mesh(mesh, nodes, pass);
     divide_surface(surface, parent, nodes);
     divide_edges(features.edges, nodes);
     if (parts == layers) done.elements = pass.elements;

@@ -37,7 +37,7 @@ struct SplitSpans {
 /// layer off the low side, longest edges first, so that neighbours divide their common face alike. No vertex moves, so
 /// the body stays what it is. `surface` is what the mesh fills, whose vertices are the mesh's first ones, and
 /// `features` its features: both follow, and `parent` gets the old triangle of each of its triangles. REQUIRES a linear
-/// mesh without wide cells, sets and curves, layers >= 2.
+/// mesh without wide cells and curves, layers >= 2.
 SplitSpans split_spans(TetMesh& mesh, std::vector<Span> spans, std::uint32_t layers, SurfaceMesh& surface,
                        Features& features, std::vector<std::uint32_t>& parent, const RunContext& context);
 

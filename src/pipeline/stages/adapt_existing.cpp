@@ -76,7 +76,7 @@ void adapt_whole(const TetMesh& given, const adapt::MetricField& metric, const a
     require_near(made.given);
     tell_given(made.given, stage);
     result.mesh = std::move(made.mesh);
-    result.old_of_new = std::move(made.old_of_new);
+    result.old_of_new = std::move(made.from.nodes);
     result.old_tet_of_new = adapt::same_tets(given, result.mesh, result.old_of_new);
     result.after = summary_of(adapt::fit_of(result.mesh, metric));
   });

@@ -54,7 +54,7 @@ struct Changed {
 Changed changed_by(const TetMesh& given, const adapt::Section& section, const adapt::MetricField& metric,
                    const adapt::AdaptRules& rules, const Stage& stage) {
   Changed made{adapt::adapt_mesh(section.mesh, metric, rules, stage), given, {}};
-  made.ids = adapt::splice(made.whole, section, made.part.mesh, made.part.old_of_new);
+  made.ids = adapt::splice(made.whole, section, made.part.mesh, made.part.from);
   return made;
 }
 

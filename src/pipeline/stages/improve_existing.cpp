@@ -4,7 +4,10 @@
 #include <octafront/repair.h>
 #include <octafront/validity.h>
 
+#include "base/core/flat_map.h"
+#include "base/labels/labels.h"
 #include "improve/curved/curved.h"
+#include "improve/schedule/kept_labels.h"
 #include "improve/schedule/schedule.h"
 #include "pipeline/stages/adapting.h"
 #include "pipeline/stages/follow_boundary.h"
@@ -12,10 +15,11 @@
 #include "pipeline/stages/kept_volumes.h"
 #include "pipeline/stages/requirements.h"
 #include "pipeline/stages/stages.h"
-#include "pipeline/stages/without_wide_cells.h"
 #include "soup/defects/examine.h"
 #include "surface/check/surface_check.h"
 
+#include <algorithm>
+#include <map>
 #include <optional>
 #include <utility>
 
@@ -62,6 +66,38 @@ void require_on_surface(const TetMesh& mesh, const SurfaceMesh& boundary, const 
     }
 }
 
+/// The lines of the boundary that are to stay: features, borders of patches and sets of faces, and curves, of which
+/// those of other labels end where they meet.
+Features lines_of(const TetMesh& mesh, double feature_angle) {
+  SurfaceMesh boundary = boundary_of(mesh);
+  if (has_sets(mesh, NamedSet::Kind::kFaces)) {
+    boundary.patch = labels_of(mesh, NamedSet::Kind::kFaces).of;
+    boundary.patch.resize(boundary.triangles.size());
+  }
+  Features lines = detect_features(boundary, feature_angle);
+  if (mesh.curve_edges.empty()) return lines;
+  FlatSet<Edge> of_boundary;
+  for (const Triangle& t : mesh.boundary)
+    for (std::size_t i = 0; i < 3; ++i) of_boundary.insert(sorted_edge(t[i], t[(i + 1) % 3]));
+  std::map<Edge, std::uint32_t> label;
+  for (const Edge& e : lines.edges) label[e] = kNone;
+  const Labels curves = labels_of(mesh, NamedSet::Kind::kEdges);
+  for (std::size_t e = 0; e < curves.of.size(); ++e)
+    if (const Edge edge = sorted_edge(mesh.curve_edges[e][0], mesh.curve_edges[e][1]); of_boundary.contains(edge))
+      label[edge] = curves.of[e];
+  lines.edges.clear();
+  std::map<VertexIndex, std::uint32_t> at;
+  for (const auto& [edge, own] : label) {
+    lines.edges.push_back(edge);
+    for (const VertexIndex v : edge)
+      if (const auto [other, is_first] = at.try_emplace(v, own); !is_first && other->second != own)
+        lines.corners.push_back(v);
+  }
+  std::sort(lines.corners.begin(), lines.corners.end());
+  lines.corners.erase(std::unique(lines.corners.begin(), lines.corners.end()), lines.corners.end());
+  return lines;
+}
+
 Ground prepare_ground(const TetMesh& mesh, const SurfaceMesh& surface, double feature_angle,
                       const RunContext& context) {
   Examined found = examine_surface(surface, false, context);
@@ -75,69 +111,45 @@ Ground prepare_ground(const TetMesh& mesh, const SurfaceMesh& surface, double fe
   require_on_surface(mesh, boundary, known);
   if (const auto defect = first_surface_defect(without_inner_points(boundary), known.mesh(), context))
     throw InputError("the boundary of the mesh cannot be moved on the surface given: " + *defect);
-  return {std::move(known), detect_features(boundary, feature_angle)};
+  return {std::move(known), lines_of(mesh, feature_angle)};
 }
 
 void require_valid(const TetMesh& mesh, const RunContext& context) {
   if (const auto defect = first_defect(mesh, context)) throw InputError("not a valid mesh: " + *defect);
 }
 
-/// The mesh as it is; what improvement does not know of leaves `mesh`.
-TetMesh put_groups_aside(TetMesh& mesh) {
-  TetMesh before = mesh;
-  mesh.interfaces.clear();
-  mesh.interface_patch.clear();
-  mesh.curve_edges.clear();
-  mesh.curve.clear();
-  mesh.sets.clear();
-  mesh.periodic_nodes.clear();
-  return before;
+/// Vertices that stay where a surface is given: pairs, what is required, and where sets of nodes end.
+std::vector<VertexIndex> staying_vertices(const TetMesh& mesh) {
+  std::vector<VertexIndex> stay = paired_vertices(mesh);
+  for (const auto& more : {required_vertices(mesh), nodes_that_stay(mesh)})
+    stay.insert(stay.end(), more.begin(), more.end());
+  return stay;
 }
 
-/// Wedges and pyramids stay, and with them the boundary and their tetrahedra.
-void improve_beside_wide_cells(TetMesh& mesh, const ImproveOptions& options, const Stage& stage) {
-  stage.note(fmt::format("{} wedges and pyramids, and the boundary, stay as they are", mesh.wide_cells.size()));
-  const WithoutWideCells without(mesh);
-  TetMesh inner = without.inner();
-  if (inner.tets.empty()) return;
-  improve_mesh(inner, nullptr, options, stage);
-  mesh = without.joined(std::move(inner));
+/// Says which elements keep themselves and the boundary as they are.
+void tell_staying(const TetMesh& mesh, const Stage& stage) {
+  const std::size_t required = improve::count_required(mesh);
+  if (!mesh.wide_cells.empty())
+    stage.note(fmt::format("{} wedges and pyramids, and the boundary, stay as they are", mesh.wide_cells.size()));
+  if (required > 0) stage.note(fmt::format("{} required elements, and the boundary, stay as they are", required));
 }
 
-/// Elements at what is required inside, as wide cells of one, which stay.
-std::vector<WideCell> required_inside(const TetMesh& mesh) {
-  std::vector<char> is_wall(mesh.points.size(), 0), is_required(mesh.points.size(), 0);
-  for (const Triangle& t : mesh.boundary)
-    for (const VertexIndex v : t) is_wall[v] = 1;
-  bool any = false;
-  for (const VertexIndex v : required_vertices(mesh)) any = (is_required[v] = !is_wall[v]) || any;
-  std::vector<WideCell> cells;
-  for (TetIndex t = 0; any && t < mesh.tets.size(); ++t)
-    if (std::ranges::any_of(mesh.tets[t], [&](VertexIndex v) { return is_required[v] != 0; }))
-      cells.push_back({t, 1, {}});
-  return cells;
-}
-
-/// Without a surface that walls may move on. What is required inside stays where it is.
-void improve_inside(TetMesh& mesh, const TetMesh& before, const ImproveOptions& options, const Stage& stage) {
-  mesh.wide_cells = required_inside(before);
-  if (mesh.wide_cells.empty()) return static_cast<void>(improve_mesh(mesh, nullptr, options, stage));
-  stage.note(fmt::format("{} elements at what is required inside stay as they are", mesh.wide_cells.size()));
-  const WithoutWideCells without(mesh);
-  TetMesh inner = without.inner();
-  if (!inner.tets.empty()) {
-    improve_mesh(inner, nullptr, options, stage);
-    mesh = without.joined(std::move(inner));
+/// Nodes of sets that went.
+void tell_lost_nodes(const std::vector<NamedSet>& before, const TetMesh& mesh, const Stage& stage) {
+  for (std::size_t s = 0; s < mesh.sets.size(); ++s) {
+    const std::size_t had = before[s].members.size(), has = mesh.sets[s].members.size();
+    if (mesh.sets[s].kind == NamedSet::Kind::kNodes && has < had)
+      stage.note(fmt::format("{} members of the set \"{}\" are no longer in the mesh, and left out", had - has,
+                             mesh.sets[s].name));
   }
-  mesh.wide_cells.clear();
 }
 
-void raise_order(TetMesh& mesh, const Ground* ground, const std::vector<VertexIndex>& paired, Run& run) {
+void raise_order(TetMesh& mesh, const Ground* ground, Run& run) {
   if (run.options.order < 2) return;
   run.stage("second order", [&](const Stage& stage) {
     run.report.second_order =
         ground ? curve_to_surface(mesh, ground->of_mesh.edges, ground->surface, run.options.surface.angle_of_features(),
-                                  {}, paired, stage.context())
+                                  {}, paired_vertices(mesh), stage.context())
                : add_straight_edges(mesh, stage.context());
     count_edges(run.report.second_order, stage);
   });
@@ -154,25 +166,18 @@ Improved improve_existing(const TetMesh& mesh, const Options& options, const Sur
   make_linear(result.mesh);
   if (mesh.is_second_order() && options.order < 2)
     run.report.stages.back().notes.emplace_back("mid-side nodes are left out; `order` 2 makes new ones");
-  // What improvement does not know of goes, and comes back as far as it is still there.
-  const TetMesh before = put_groups_aside(result.mesh);
-  const std::vector<VertexIndex> paired = paired_vertices(before);
   result.before = summarize_quality(mesh);
   run.report.input_volume = enclosed_volume(boundary_of(mesh));
   refuse_sizes_required(options.require, "improvement keeps the sizes that there are");
   std::optional<Ground> ground;
-  const bool is_mixed = !result.mesh.wide_cells.empty();
-  if (surface && !is_mixed)
+  if (surface && !improve::has_staying_elements(result.mesh))
     run.stage("surface", [&](const Stage& stage) {
-      ground.emplace(prepare_ground(mesh, *surface, options.surface.angle_of_features(), stage.context()));
+      ground.emplace(prepare_ground(result.mesh, *surface, options.surface.angle_of_features(), stage.context()));
     });
   run.stage("improve", [&](const Stage& stage) {
-    if (is_mixed) return improve_beside_wide_cells(result.mesh, options.improve, stage);
-    if (!ground) return improve_inside(result.mesh, before, options.improve, stage);
+    tell_staying(result.mesh, stage);
+    const std::vector<NamedSet> sets = result.mesh.sets;
     std::optional<improve::BoundaryInput> on;
-    std::vector<VertexIndex> stay = paired;
-    const std::vector<VertexIndex> required = required_vertices(before);
-    stay.insert(stay.end(), required.begin(), required.end());
     if (ground)
       on.emplace(improve::BoundaryInput{ground->surface.mesh(),
                                         ground->surface.tree(),
@@ -181,16 +186,15 @@ Improved improve_existing(const TetMesh& mesh, const Options& options, const Sur
                                         0,
                                         {},
                                         {},
-                                        stay});
-    if (improve_mesh(result.mesh, on ? &*on : nullptr, options.improve, stage) && on)
+                                        staying_vertices(result.mesh)});
+    if (improve_mesh(result.mesh, on ? &*on : nullptr, options.improve, stage, ground ? &ground->of_mesh : nullptr) &&
+        on)
       renew_sources(result.mesh, boundary_of(mesh), on->surface, on->tree);
-  });
-  run.stage("groups", [&](const Stage& stage) {
-    for (const std::string& note : carry_groups(before, result.mesh)) stage.note(note);
+    tell_lost_nodes(sets, result.mesh, stage);
   });
   divide_bridges(result.mesh, run);
-  raise_order(result.mesh, ground ? &*ground : nullptr, paired_now(before, result.mesh), run);
-  keep_pairs(before, result.mesh, run);
+  raise_order(result.mesh, ground ? &*ground : nullptr, run);
+  pair_mid_nodes(result.mesh, run);
   check_result(result.mesh, nullptr, run);
   run.stage("summary", [&](const Stage& stage) {
     describe(result.mesh, run.report);

@@ -2,7 +2,6 @@
 
 #include <octafront/tet_mesh.h>
 
-#include "base/core/wording.h"
 #include "base/geometry/quadratic_tet.h"
 #include "base/mesh/edge_nodes.h"
 #include "base/mesh/periodic_cell.h"
@@ -12,23 +11,9 @@
 #include <map>
 #include <set>
 
-#include <fmt/core.h>
-
 namespace octafront {
 
 namespace {
-
-/// Numbers of the improved mesh by those of the one before; kNone: no vertex lies there any more.
-std::vector<VertexIndex> numbers_now(const TetMesh& before, const TetMesh& mesh) {
-  VerticesByPlace at;
-  for (VertexIndex v = 0; v < mesh.points.size(); ++v) at.add(mesh.points[v], v);
-  std::vector<VertexIndex> now(before.points.size(), kNone);
-  for (const VertexIndex v : paired_vertices(before)) {
-    const Vec3 p = before.points[v];
-    now[v] = v < mesh.points.size() && mesh.points[v] == p ? v : at.find(p);
-  }
-  return now;
-}
 
 class MidPairs {
  public:
@@ -117,29 +102,9 @@ std::vector<VertexIndex> paired_vertices(const TetMesh& mesh) {
   return paired;
 }
 
-std::vector<VertexIndex> paired_now(const TetMesh& before, const TetMesh& mesh) {
-  if (before.periodic_nodes.empty()) return {};
-  std::vector<VertexIndex> paired;
-  for (const VertexIndex v : numbers_now(before, mesh))
-    if (v != kNone) paired.push_back(v);
-  std::sort(paired.begin(), paired.end());
-  return paired;
-}
-
-void keep_pairs(const TetMesh& before, TetMesh& mesh, Run& run) {
-  if (before.periodic_nodes.empty()) return;
+void pair_mid_nodes(TetMesh& mesh, Run& run) {
+  if (mesh.periodic_nodes.empty()) return;
   run.stage("pairs", [&](const Stage& stage) {
-    const std::vector<VertexIndex> now = numbers_now(before, mesh);
-    std::uint64_t lost = 0;
-    for (const auto& [period, copy, original] : before.periodic_nodes) {
-      if (copy >= now.size() || original >= now.size()) continue;  // mid-side nodes, which went
-      if (now[copy] == kNone || now[original] == kNone)
-        ++lost;
-      else
-        mesh.periodic_nodes.push_back({period, now[copy], now[original]});
-    }
-    std::sort(mesh.periodic_nodes.begin(), mesh.periodic_nodes.end());
-    if (lost > 0) stage.note(fmt::format("{} of the periodic mesh are there no more", counted(lost, "pair")));
     if (mesh.is_second_order()) MidPairs(mesh).run();
     stage.count("pairs of nodes", static_cast<double>(mesh.periodic_nodes.size()));
   });

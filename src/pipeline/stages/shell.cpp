@@ -3,6 +3,7 @@
 #include <octafront/error.h>
 
 #include "base/core/elementary.h"
+#include "base/labels/labels.h"
 #include "layers/through/through.h"
 #include "pipeline/stages/methods.h"
 #include "pipeline/stages/stages.h"
@@ -23,14 +24,6 @@ constexpr double kTimesOfTwo = 2.1, kPowerOfLayers = 2.55;
 
 void require_for_shell(bool holds, const char* sentence) {
   if (!holds) throw OptionError(sentence);
-}
-
-std::vector<std::uint32_t> inherited(const std::vector<std::uint32_t>& values,
-                                     const std::vector<std::uint32_t>& parent) {
-  std::vector<std::uint32_t> made;
-  if (values.empty()) return made;
-  for (const std::uint32_t p : parent) made.push_back(values[p]);
-  return made;
 }
 
 }  // namespace
@@ -72,7 +65,7 @@ void layer_walls(Filled& filled, Run& run) {
     std::vector<std::uint32_t> parent;
     layers::SplitSpans split = layers::split_spans(mesh, std::move(spans), shell, boundary.surface, boundary.features,
                                                    parent, stage.context());
-    boundary.source = inherited(boundary.source, parent);
+    boundary.source = of_items(boundary.source, parent);
     const layers::ThinnedOut thinned =
         layers::thin_out(mesh, boundary.surface.points.size(), std::move(split.level), stage.context());
     stage.count("elements through walls", static_cast<double>(split.elements));

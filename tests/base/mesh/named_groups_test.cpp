@@ -11,9 +11,7 @@
 namespace octafront {
 namespace {
 
-using ::testing::ElementsAre;
 using ::testing::HasSubstr;
-using ::testing::IsEmpty;
 using Kind = NamedSet::Kind;
 
 TEST(AddGroup, TakesWhatLiesInABoxOrBall) {
@@ -59,27 +57,6 @@ TEST(PatchCurves, AreWherePatchesMeet) {
   EXPECT_EQ(1 + *std::max_element(mesh.curve.begin(), mesh.curve.end()), 12U + 4);
   EXPECT_EQ(std::count(mesh.curve_names.begin(), mesh.curve_names.end(), "fixed end|y_max"), 1);
   EXPECT_EQ(std::count(mesh.curve_names.begin(), mesh.curve_names.end(), ""), 4 + 1);  // of the patch without a name
-}
-
-TEST(CarryGroups, KeepsWhatIsStillThere) {
-  const TetMesh before = testing::rich_mesh(4);
-  TetMesh mesh = before;
-  mesh.interfaces.clear();
-  mesh.interface_patch.clear();
-  mesh.curve_edges.clear();
-  mesh.sets.clear();
-  EXPECT_THAT(carry_groups(before, mesh), IsEmpty());
-  EXPECT_EQ(mesh, before);
-  // Elements in another order: sets of them are lost, and said to be.
-  std::swap(mesh.tets[0], mesh.tets[1]);
-  EXPECT_THAT(carry_groups(before, mesh), ElementsAre(HasSubstr("set \"core\"")));
-  EXPECT_EQ(mesh.interfaces, before.interfaces);
-  // A node that moved takes with it what was at it.
-  mesh = before;
-  mesh.points[0] = mesh.points[0] - Vec3{0.1, 0.1, 0.1};
-  EXPECT_THAT(carry_groups(before, mesh), ElementsAre("3 edges of curves are no longer in the mesh, and left out",
-                                                      HasSubstr("near origin"), HasSubstr("rails")));
-  EXPECT_EQ(first_defect(mesh), std::nullopt);
 }
 
 }  // namespace
