@@ -25,6 +25,7 @@ import tempfile
 
 ROOT = pathlib.Path(__file__).resolve().parents[2]
 sys.path.insert(0, str(pathlib.Path(__file__).resolve().parents[2]))
+from bench.off import write_off
 from bench.pages import tables
 from bench.pages.origin import written_by
 
@@ -236,13 +237,6 @@ def with_facets_of(family, number, given):
     return ring_body([(low, 0), (2, 0), (2, 1), (high, 1)], m, turn)
 
 
-def write(path, surface):
-    with open(path, "w", encoding="ascii") as out:
-        out.write(f"OFF\n{len(surface.points)} {len(surface.triangles)} 0\n")
-        out.writelines(f"{x!r} {y!r} {z!r}\n" for x, y, z in surface.points)
-        out.writelines(f"3 {a} {b} {c}\n" for a, b, c in surface.triangles)
-
-
 def volume(surface):
     p = surface.points
     return sum(p[a][0] * (p[b][1] * p[c][2] - p[b][2] * p[c][1]) + p[a][1] * (p[b][2] * p[c][0] - p[b][0] * p[c][2]) +
@@ -263,7 +257,7 @@ def mesh(bodies, names, size, folder):
     files = []
     for name, body in zip(names, bodies):
         files.append(str(folder / f"{name}.off"))
-        write(files[-1], body)
+        write_off(files[-1], *body)
     report, made = folder / "report.json", folder / "made.vtu"
     for old in (report, made):
         old.unlink(missing_ok=True)
@@ -370,7 +364,7 @@ def main():
         made, _ = case(int(a.write[0]))
         for kind, bodies in (("given", made.given), ("matched", made.matched)):
             for i, body in enumerate(bodies):
-                write(pathlib.Path(a.write[1]) / f"{kind}{i}.off", body)
+                write_off(pathlib.Path(a.write[1]) / f"{kind}{i}.off", *body)
         return 0
     runs = []
     with tempfile.TemporaryDirectory() as temporary:

@@ -11,18 +11,15 @@ import subprocess
 import sys
 import tempfile
 
-sys.path.insert(0, str(pathlib.Path(__file__).resolve().parents[2] / "examples" / "solve"))
+ROOT = pathlib.Path(__file__).resolve().parents[2]
+sys.path[:0] = [str(ROOT), str(ROOT / "examples/solve")]
 import ccx  # noqa: E402
+from bench.off import write_off  # noqa: E402
 
 YOUNG, POISSON = 1000.0, 0.3
 HALF = 8.0
 # Corners of the sides of C3D10: S1 = 123, S2 = 124, S3 = 234, S4 = 134.
 SIDES = ((0, 1, 2), (0, 1, 3), (1, 2, 3), (0, 2, 3))
-
-
-def write_off(path, points, faces):
-    path.write_text(f"OFF\n{len(points)} {len(faces)} 0\n" + "".join("%.17g %.17g %.17g\n" % p for p in points) +
-                    "".join(f"{len(f)} {' '.join(map(str, f))}\n" for f in faces))
 
 
 def write_bodies(folder):

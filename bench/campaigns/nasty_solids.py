@@ -25,6 +25,7 @@ import time
 
 ROOT = pathlib.Path(__file__).resolve().parents[2]
 sys.path.insert(0, str(pathlib.Path(__file__).resolve().parents[2]))
+from bench.off import write_off
 from bench.models import nasty_solids as solids
 from bench.models import thin_solids
 from bench.pages import tables
@@ -85,7 +86,7 @@ def plain_seconds(folder):
     """Per element of a ball, about as many as the cases have."""
     ball = solids.sphere(1.0, 48)
     path = folder / "ball.off"
-    solids.write_off(path, ball)
+    write_off(path, *ball)
     _, _, cpu, report = mesh(path, folder, size_for(ball, FINE), 60)
     return cpu / report["tets"]
 
@@ -178,7 +179,7 @@ def main():
     arguments = parser.parse_args()
     generated = thin_solids if arguments.thin else solids
     if arguments.write:
-        solids.write_off(arguments.write[1], generated.make(int(arguments.write[0]), arguments.seed)[1])
+        write_off(arguments.write[1], *generated.make(int(arguments.write[0]), arguments.seed)[1])
         return 0
     cases = range(*(int(x) for x in arguments.cases.split(":")))
     families = arguments.families.split(",") if arguments.families else list(generated.FAMILIES)
@@ -194,7 +195,7 @@ def main():
                 arguments.cases = f"{cases.start}:{number}:{cases.step}"
                 break
             path = folder / f"{number:04}.off"
-            solids.write_off(path, solid)
+            write_off(path, *solid)
             for size in arguments.sizes.split(","):
                 runs.append(judge(number, family, solid, size, folder, plain))
                 if arguments.json:

@@ -11,6 +11,7 @@ import tempfile
 import numpy as np
 
 sys.path.insert(0, str(pathlib.Path(__file__).resolve().parents[2]))
+from bench.off import write_off
 from bench.models import damages
 from bench.models import solids
 from bench.models.solids import Solid
@@ -226,7 +227,7 @@ def main():
             made = make()
             file = pathlib.Path(a.keep or folder, "".join(c if c.isalnum() else "-" for c in name) + ".off")
             file.parent.mkdir(parents=True, exist_ok=True)
-            solids.write_off(file, made)
+            write_off(file, *made)
             for step, out, options in (("repair", "out.off", []), ("mesh", "out.vtu", ["--elements", "20000"])):
                 if step == "mesh" and a.no_mesh:
                     continue

@@ -25,6 +25,7 @@ import numpy
 
 ROOT = pathlib.Path(__file__).resolve().parents[2]
 sys.path.insert(0, str(pathlib.Path(__file__).resolve().parents[2]))
+from bench.off import write_off
 from bench.pages import tables
 from bench.pages.origin import written_by
 
@@ -107,13 +108,6 @@ def turned(points, seed, scale):
             turn[u, u], turn[u, v], turn[v, u], turn[v, v] = c, -s, s, c
             points = points @ turn
     return points * scale
-
-
-def write_off(path, points, triangles):
-    with open(path, "w", encoding="ascii") as out:
-        out.write(f"OFF\n{len(points)} {len(triangles)} 0\n")
-        out.writelines("{!r} {!r} {!r}\n".format(*map(float, p)) for p in points)
-        out.writelines("3 {} {} {}\n".format(*t) for t in triangles)
 
 
 def octafront(folder, *arguments):

@@ -18,6 +18,7 @@ import zlib
 import numpy as np
 
 sys.path.insert(0, str(pathlib.Path(__file__).resolve().parents[2]))
+from bench.off import write_off
 from bench.models import damages
 from bench.models import solids
 
@@ -76,11 +77,14 @@ def write(folder, number, kind, name, made, seed):
     """The files of a case; returns what the JSON says, with paths."""
     stem = pathlib.Path(folder, f"{number:04}")
     damaged = stem.with_suffix(".stl" if made.as_stl else ".off")
-    (solids.write_stl if made.as_stl else solids.write_off)(damaged, made.soup)
+    if made.as_stl:
+        solids.write_stl(damaged, made.soup)
+    else:
+        write_off(damaged, *made.soup)
     truth = []
     for k, solid in enumerate(made.truth):
         truth.append(stem.with_name(f"{stem.name}-truth-{k}.off"))
-        solids.write_off(truth[-1], solid)
+        write_off(truth[-1], *solid)
     known = {"case": number, "seed": seed, "kind": kind, "model": name, "what": made.what, "file": str(damaged),
              "solids": [str(t) for t in truth], "expected": made.expected, "directions": DIRECTIONS,
              "zones": [zone(z) for z in made.zones],

@@ -6,7 +6,7 @@ import math
 
 import numpy as np
 
-from bench.models.solids import grid, merged, read_off, sphere, together, torus, voxels, write_off
+from bench.models.solids import grid, merged, sphere, together, torus, voxels
 
 
 def write_obj(path, body):

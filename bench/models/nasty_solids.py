@@ -63,13 +63,6 @@ def diagonal(s):
     return math.dist([min(c) for c in zip(*s.points)], [max(c) for c in zip(*s.points)])
 
 
-def write_off(path, s):
-    with open(path, "w") as f:
-        f.write(f"OFF\n{len(s.points)} {len(s.triangles)} 0\n")
-        f.writelines(f"{x!r} {y!r} {z!r}\n" for x, y, z in s.points)
-        f.writelines(f"3 {a} {b} {c}\n" for a, b, c in s.triangles)
-
-
 # ------------------------------------------------------------------------------------------------- building blocks
 
 

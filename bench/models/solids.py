@@ -9,6 +9,8 @@ import sys
 
 import numpy as np
 
+from bench import off
+
 ROOT = pathlib.Path(__file__).resolve().parents[2]
 Solid = collections.namedtuple("Solid", "points triangles")
 
@@ -17,26 +19,8 @@ Solid = collections.namedtuple("Solid", "points triangles")
 
 
 def read_off(path):
-    """Triangles and polygons; polygons as fans."""
-    words = [w for line in open(path, errors="replace") for w in line.partition("#")[0].split()]
-    if not words or words[0] != "OFF":
-        raise ValueError(f"{path}: no OFF file of points and faces")
-    n, m = int(words[1]), int(words[2])
-    points = np.array(words[4:4 + 3 * n], float).reshape(n, 3)
-    triangles, at = [], 4 + 3 * n
-    for _ in range(m):
-        corners = [int(w) for w in words[at + 1:at + 1 + int(words[at])]]
-        at += 1 + int(words[at])
-        triangles += [(corners[0], b, c) for b, c in zip(corners[1:], corners[2:])]
-    return Solid(points, np.array(triangles, int).reshape(-1, 3))
-
-
-def write_off(path, solid):
-    """All digits: reading gives the same bits."""
-    with open(path, "w") as f:
-        f.write(f"OFF\n{len(solid.points)} {len(solid.triangles)} 0\n")
-        f.writelines(f"{x!r} {y!r} {z!r}\n" for x, y, z in solid.points.tolist())
-        f.writelines(f"3 {a} {b} {c}\n" for a, b, c in solid.triangles.tolist())
+    points, triangles = off.read_off(path)
+    return Solid(np.array(points, float).reshape(-1, 3), np.array(triangles, int).reshape(-1, 3))
 
 
 def write_stl(path, solid):

@@ -5,7 +5,7 @@ Like `nasty_solids.py`, whose Solid and building blocks these use: closed, outwa
 import itertools
 import math
 
-from bench.models.nasty_solids import Solid, drawn, log_between, moved, prism, scaled, sphere, star_ring, together, turned, turned_inside_out
+from bench.models.nasty_solids import drawn, log_between, moved, prism, scaled, Solid, sphere, star_ring, together, turned, turned_inside_out
 
 # ------------------------------------------------------------------------------------------------- building blocks
 

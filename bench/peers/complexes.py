@@ -4,6 +4,8 @@ octafront surface writes them; and what TetGen reads.
 import pathlib
 import struct
 
+from bench import off
+
 # Types of PLY properties as struct has them.
 TYPES = {"double": "d", "float": "f", "uint": "I", "int": "i", "uchar": "B"}
 
@@ -50,10 +52,7 @@ def boundary_of(triangles, sides, region):
 def write_off(path, points, triangles):
     """Of the points only those that are used."""
     used = {v: k for k, v in enumerate(sorted({v for t in triangles for v in t}))}
-    with open(path, "w") as out:
-        out.write(f"OFF\n{len(used)} {len(triangles)} 0\n")
-        out.writelines("{!r} {!r} {!r}\n".format(*points[v]) for v in used)
-        out.writelines("3 {} {} {}\n".format(*(used[v] for v in t)) for t in triangles)
+    off.write_off(path, [points[v] for v in used], [[used[v] for v in t] for t in triangles])
 
 
 def volumes_of_sides(points, triangles, sides):

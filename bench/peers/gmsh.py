@@ -2,6 +2,7 @@
 import pathlib
 import re
 
+from bench.off import read_off
 from bench.peers import surfaces
 from bench.process import finish, run_measured
 
@@ -40,7 +41,7 @@ Mesh.SaveAll = 1;
 def fill(surface, folder, timeout, algorithm, optimize, threads):
     """Keeps the triangles of `surface` (OFF). The mesh is binary MSH 4.1."""
     folder = pathlib.Path(folder)
-    points, triangles = surfaces.read_off(surface)
+    points, triangles = read_off(surface)
     surfaces.write_msh(folder / "in.msh", points, triangles)
     (folder / "in.geo").write_text(SCRIPT.format(algorithm=algorithm, optimize=int(optimize), threads=threads,
                                                  size=surfaces.mean_edge(points, triangles)))
@@ -50,7 +51,7 @@ def fill(surface, folder, timeout, algorithm, optimize, threads):
 def remesh(surface, folder, timeout, size, algorithm, optimize=True, threads=1):
     """Triangulates `surface` (OFF) anew to `size` and fills it. The mesh is binary MSH 4.1."""
     folder = pathlib.Path(folder)
-    surfaces.write_stl(folder / "in.stl", *surfaces.read_off(surface))
+    surfaces.write_stl(folder / "in.stl", *read_off(surface))
     (folder / "in.geo").write_text(REMESH_SCRIPT.format(algorithm=algorithm, optimize=int(optimize), threads=threads,
                                                         size=size))
     return run(folder, timeout, threads)

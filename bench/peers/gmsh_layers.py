@@ -13,13 +13,14 @@ import sys
 
 import gmsh
 
+from bench.off import read_off
 from bench.peers import surfaces
 
 FEATURE = math.radians(40)
 
 
 def kept(path):
-    points, triangles = surfaces.read_off(path)
+    points, triangles = read_off(path)
     gmsh.model.addDiscreteEntity(2, 1)
     gmsh.model.mesh.addNodes(2, 1, range(1, len(points) + 1), [x for p in points for x in p])
     gmsh.model.mesh.addElementsByType(1, 2, [], [v + 1 for t in triangles for v in t])
@@ -28,7 +29,7 @@ def kept(path):
 
 def meshed_anew(path, size):
     """The surface divided into parts that can be parametrised, and meshed to `size`."""
-    surfaces.write_stl("in.stl", *surfaces.read_off(path))
+    surfaces.write_stl("in.stl", *read_off(path))
     gmsh.merge("in.stl")
     gmsh.model.mesh.classifySurfaces(FEATURE, True, True, math.pi)
     gmsh.model.mesh.createGeometry()

@@ -8,6 +8,7 @@ import re
 import resource
 import sys
 
+from bench.off import read_off
 from bench.peers import surfaces
 from bench.process import finish, load_library, run_measured
 
@@ -72,7 +73,7 @@ def function(library, mangled, result, *arguments):
 
 
 def fill_in_process(surface, out, optimize):
-    points, triangles = surfaces.read_off(surface)
+    points, triangles = read_off(surface)
     library, pointer = load(), ctypes.c_void_p
     function(library, "7Ng_InitEv", None)()
     mesh = function(library, "10Ng_NewMeshEv", pointer)()
@@ -105,7 +106,7 @@ def fill_mesh(library, mesh, parameters, start=None):
 
 def mesh_stl_surface(library, surface, size):
     """Netgen's STL mesher on the surface: (mesh, parameters, resources used when it began)."""
-    points, triangles = surfaces.read_off(surface)
+    points, triangles = read_off(surface)
     pointer = ctypes.c_void_p
     function(library, "7Ng_InitEv", None)()
     geometry = function(library, "18Ng_STL_NewGeometryEv", pointer)()

@@ -2,7 +2,7 @@
 import ctypes
 import sys
 
-from bench.peers import surfaces
+from bench.off import write_off
 from bench.peers.netgen import function, load, mesh_stl_surface, surface_triangles
 
 
@@ -14,7 +14,7 @@ def main(surface, out, size):
     for i in range(1, function(library, "8Ng_GetNPEPPv", ctypes.c_int, pointer)(mesh) + 1):
         point(mesh, i, xyz)
         points.append(tuple(xyz))
-    surfaces.write_off(out, points, surface_triangles(library, mesh))
+    write_off(out, points, surface_triangles(library, mesh))
 
 
 main(sys.argv[1], sys.argv[2], float(sys.argv[3]))

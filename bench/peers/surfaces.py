@@ -3,21 +3,6 @@ import math
 import struct
 
 
-def read_off(path):
-    """(points, triangles) of an OFF file with triangles only."""
-    words = iter(open(path).read().split())
-    if next(words) != "OFF":
-        raise ValueError(f"{path} is not an OFF file")
-    points, faces, _ = int(next(words)), int(next(words)), next(words)
-    xyz = [(float(next(words)), float(next(words)), float(next(words))) for _ in range(points)]
-    triangles = []
-    for _ in range(faces):
-        if next(words) != "3":
-            raise ValueError(f"{path} has faces that are not triangles")
-        triangles.append((int(next(words)), int(next(words)), int(next(words))))
-    return xyz, triangles
-
-
 def mean_edge(points, triangles):
     total = 0.0
     for a, b, c in triangles:
@@ -52,13 +37,6 @@ def write_stl(path, points, triangles):
         f.write(bytes(80) + struct.pack("<I", len(triangles)))
         for triangle in triangles:
             f.write(struct.pack("<12fH", 0, 0, 0, *(x for corner in triangle for x in points[corner]), 0))
-
-
-def write_off(path, points, triangles):
-    with open(path, "w") as f:
-        f.write(f"OFF\n{len(points)} {len(triangles)} 0\n")
-        f.writelines(f"{x!r} {y!r} {z!r}\n" for x, y, z in points)
-        f.writelines(f"3 {a} {b} {c}\n" for a, b, c in triangles)
 
 
 def boundary_of_medit(path):

@@ -3,6 +3,7 @@ import pathlib
 import re
 import shutil
 
+from bench.off import read_off
 from bench.peers import complexes, surfaces
 from bench.process import finish, run_measured
 
@@ -15,7 +16,7 @@ def fill(surface, folder, timeout, quality=True):
     """Keeps the triangles of `surface` (OFF). The mesh is MEDIT; writing it is not part of the times."""
     folder = pathlib.Path(folder)
     shutil.copy(surface, folder / "in.off")
-    h = surfaces.mean_edge(*surfaces.read_off(surface))
+    h = surfaces.mean_edge(*read_off(surface))
     flags = f"-pY{'q' if quality else ''}a{VOLUME_FACTOR * h**3 / 72**0.5:.9g}"
     outcome = run_measured(["tetgen", flags, "in.off"], folder, timeout)
     total = re.search(r"Total running seconds:\s*([\d.]+)", outcome.log)

@@ -19,6 +19,7 @@ import zlib
 import numpy as np
 
 from bench.models import damages, solids
+from bench.off import write_off
 from bench.pages import tables
 from bench.pages.origin import ORIGIN, written_by
 from bench.process import run_bounded
@@ -85,7 +86,7 @@ def rows_of(a, name, solid, done):
         file = pathlib.Path(folder, "model.off")
 
         def row(kind, surface, **more):
-            solids.write_off(file, surface)
+            write_off(file, *surface)
             done.add((name, kind))
             return {"model": name, "kind": kind, "origin": ORIGIN} | more | meshed(a.program, file, folder, a.timeout)
         for kind in [k for k in a.kinds.split(",") if (name, k) not in done]:

@@ -11,6 +11,7 @@ import subprocess
 import sys
 import time
 
+from bench.off import write_off
 from bench.ours import evaluated, mesh
 from bench.pages import experiments_page
 from bench.pages.origin import ORIGIN
@@ -43,7 +44,7 @@ class Experiments:
         mesh = self.work / "dragon.mesh"
         self.run(self.octafront, "mesh", DRAGON_SCAN, "-o", mesh, "--method", "octree", "--elements", "400000", "--improve",
                  "none", "-q")
-        surfaces.write_off(self.work / "dragon.off", *surfaces.boundary_of_medit(mesh))
+        write_off(self.work / "dragon.off", *surfaces.boundary_of_medit(mesh))
 
     def compare(self):
         self.run(sys.executable, "bench/run/compare.py", self.octafront, *MODELS, self.work / "dragon.off", "-o", self.work / "compare", "--elements",

@@ -12,6 +12,7 @@ import pathlib
 import tempfile
 
 from bench import ours
+from bench.off import read_off
 from bench.ours import cpu_seconds, evaluated
 from bench.pages import tables
 from bench.pages.origin import written_by
@@ -81,7 +82,7 @@ KEPT_HEAD = ["surface", "mesher", "elements", "CPU s", "k/s", "ours over it", "f
 
 def as_stl(model, folder):
     path = pathlib.Path(folder, pathlib.Path(model).stem + ".stl")
-    surfaces.write_stl(path, *surfaces.read_off(f"models/clean/{model}"))
+    surfaces.write_stl(path, *read_off(f"models/clean/{model}"))
     return path
 
 

@@ -20,6 +20,7 @@ import sys
 import tempfile
 
 from bench import ours
+from bench.off import read_off
 from bench.pages import tables
 from bench.pages.origin import written_by
 from bench.peers import gmsh, netgen, surfaces, tetgen
@@ -142,7 +143,7 @@ def kept_surface(build, model, folder):
 
 def run_tetgen(surface, folder, optimization, out):
     shutil.copy(surface, folder / "in.off")
-    h = surfaces.mean_edge(*surfaces.read_off(surface))
+    h = surfaces.mean_edge(*read_off(surface))
     flags = f"-pYqa{tetgen.VOLUME_FACTOR * h**3 / 72**.5:.9g}O{optimization}"
     done = run_measured(["tetgen", flags, "in.off"], folder, TIMEOUT)
     if not done.error:

@@ -12,14 +12,10 @@ import tempfile
 import meshio
 import numpy as np
 
+from bench.off import write_off
 from bench.pages import tables
 from bench.pages.origin import written_by
 from bench.process import run_measured
-
-
-def write_off(path, points, faces):
-    rows = [f"OFF\n{len(points)} {len(faces)} 0"] + ["%.17g %.17g %.17g" % tuple(p) for p in points]
-    path.write_text("\n".join(rows + [f"{len(f)} " + " ".join(map(str, f)) for f in faces]) + "\n")
 
 
 def block():

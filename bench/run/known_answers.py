@@ -20,6 +20,7 @@ import sys
 import tempfile
 
 from bench.models import damage_models as damage, solids
+from bench.off import write_off
 from bench.pages import tables
 from bench.pages.origin import ORIGIN, written_by
 from bench.process import run_bounded
@@ -114,7 +115,7 @@ def do_clean(build, name, a):
         return None
     with tempfile.TemporaryDirectory() as folder:
         before, after = pathlib.Path(folder, "in.off"), pathlib.Path(folder, "out.off")
-        solids.write_off(before, solid)
+        write_off(before, *solid)
         status, message, _, _ = run_bounded([build / "cli/octafront", "repair", before, "-o", after, "-q"], a.timeout)
         if status != 0:
             return f"status {status}: {message[:200]}"

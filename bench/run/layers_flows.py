@@ -13,7 +13,7 @@ import tempfile
 import numpy as np
 
 from bench.judges.foam_mesh import check_mesh, verdict
-from bench.models import layers_bodies as bodies
+from bench.models import layers_bodies as bodies, solids
 from bench.pages import tables
 from bench.pages.origin import written_by
 from bench.process import run_bounded
@@ -38,7 +38,7 @@ def extent(points):
 def make_flow(name, folder):
     """Options; in.obj is the body in a box that reaches a diagonal farther on all sides."""
     body, size, more = FLOWS[name]
-    part = body() if callable(body) else tuple(bodies.read_off(ROOT / f"models/flows/{body}.off"))
+    part = body() if callable(body) else tuple(solids.read_off(ROOT / f"models/flows/{body}.off"))
     low, high, diagonal = extent(part[0])
     bodies.write_obj(folder / "in.obj", bodies.in_box({"body": part}, low - diagonal, high + diagonal))
     return ["--nested", "cavity", "--size", diagonal / 5, "--size-of", f"body={size}", "--gradation", 0.3, "--on", "body", *more]

@@ -13,7 +13,8 @@ import tempfile
 import numpy as np
 
 from bench.judges.foam_mesh import check_mesh, environment, FoamMesh, layers_on, new_case, verdict
-from bench.models import layers_bodies as bodies
+from bench.models import layers_bodies as bodies, solids
+from bench.off import write_off
 from bench.pages import tables
 from bench.pages.origin import written_by
 from bench.peers import gmsh, snappy
@@ -47,12 +48,12 @@ class Case:
 
 
 def model(name):
-    solid = bodies.read_off(ROOT / "models/clean" / name)
+    solid = solids.read_off(ROOT / "models/clean" / name)
     return {"body": tuple(solid)}
 
 
 def flow(name):
-    solid = bodies.read_off(ROOT / "models/flows" / name)
+    solid = solids.read_off(ROOT / "models/flows" / name)
     return {"body": tuple(solid)}
 
 
@@ -93,7 +94,7 @@ def by_gmsh(program, case, folder, timeout):
     has_ends = len(case.body) > 1
     bodies.write_obj(folder / "in.obj", case.body)
     subprocess.run([program, "surface", "in.obj", "--size", str(case.size), "-q", "-o", "anew.obj"], cwd=folder, check=True, timeout=timeout)
-    bodies.write_off(folder / "wall.off", bodies.merged(*bodies.together([bodies.read_obj(folder / "anew.obj")[wall] for wall in case.walls])))
+    write_off(folder / "wall.off", *bodies.merged(*bodies.together([bodies.read_obj(folder / "anew.obj")[wall] for wall in case.walls])))
     asked = {"surface": "wall.off", "flat_ends": has_ends, "box": [list(map(float, c)) for c in case.box] if case.box else None, "algorithm": gmsh.HXT,
              "tops": [(1 if case.box else -1) * top for top in np.cumsum(case.heights)], "size": case.size, "far": case.far, "out": "out.msh"}
     (folder / "in.json").write_text(json.dumps(asked))

@@ -12,11 +12,12 @@ import meshio
 import numpy as np
 
 from bench.models import sector
+from bench.off import write_off
 from bench.ours import mesh
 from bench.pages import tables
 from bench.pages.origin import written_by
 from bench.process import run_measured
-from bench.run.inside import block, quality, write_off
+from bench.run.inside import block, quality
 
 MATRIX, BALLS = (1.0, 0.3), (10.0, 0.2)  # Young's modulus, Poisson's ratio
 BALL = 0.3

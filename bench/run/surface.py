@@ -208,7 +208,7 @@ def peers(build, rows):
             r = judge(build, model, "--size", size)
             add(file, "Octafront", r, r.get("size_seconds", 0) + r.get("front_seconds", 0))
             stl = pathlib.Path(folder, "in.stl")
-            subprocess.run(["python3", "bench/peers/to_stl.py", model, stl, stl.with_suffix(".off")], check=True)
+            subprocess.run(["python3", "-m", "bench.peers.to_stl", model, stl, stl.with_suffix(".off")], check=True)
             for name, make in PEERS:
                 seconds, made = make(stl, size, folder, build.resolve())
                 path = pathlib.Path(folder, made)

@@ -10,11 +10,11 @@ import math
 import pathlib
 import tempfile
 
+from bench.off import write_off
 from bench.ours import evaluated, mesh
 from bench.pages import tables
 from bench.pages.origin import written_by
 from bench.peers import gmsh, tetgen
-from bench.peers.surfaces import write_off
 
 THICKNESS = [1e-1, 1e-2, 1e-3, 1e-4, 1e-5, 1e-6]
 HEAD = ["body", "thickness", "mesher", "volume, %", "elements", "least angle", "most angle", "CPU s"]

@@ -12,6 +12,7 @@ sys.path.insert(0, str(ROOT))
 import numpy as np  # noqa: E402
 from bench.models import damages, solids  # noqa: E402
 from bench.models.solids import Solid  # noqa: E402
+from bench.off import write_off  # noqa: E402
 from bench.run import known_answers  # noqa: E402
 
 BUILD = pathlib.Path(sys.argv[1])
@@ -22,7 +23,7 @@ failures = []
 
 def surface(made):
     path = pathlib.Path(FOLDER.name, "made.off")
-    solids.write_off(path, made)
+    write_off(path, *made)
     return path
 
 
