@@ -13,6 +13,7 @@
 #include <filesystem>
 #include <optional>
 #include <string>
+#include <string_view>
 #include <utility>
 #include <vector>
 
@@ -21,7 +22,7 @@ namespace octafront::cli {
 /// A length of Options that was typed with a unit.
 struct TypedLength {
   std::string option, unit;
-  std::optional<double>* value;
+  std::string_view name;  ///< of its row
 };
 
 /// What people choose who do not want to think: how fine automatic sizes are, and how long elements are improved.
@@ -37,17 +38,9 @@ struct Arguments {
   std::filesystem::path defects;              ///< where the changes of repair are shown; empty: nowhere
   std::vector<std::filesystem::path> meshes;  ///< that are written; "-": to standard output
   std::vector<std::string> formats;           ///< of the meshes in turn; empty: by their endings
-  bool ascii = false;                         ///< of the meshes: as text
-  bool cells_only = false;                    ///< of the meshes: tetrahedra alone
-  bool cohesive = false;                      ///< of the meshes: with cohesive elements where they are split
-  std::string beams;                          ///< of the meshes: curves that are beams, too
-  int parts = 0;                              ///< of the meshes: divided into so many; 0: whole
-  Partitioner partitioner = Partitioner::kCurve;
-  bool split_files = false;        ///< of the meshes: a file for each part
-  std::vector<std::string> only;   ///< places that may change
-  std::vector<std::string> keep;   ///< what stays beside them
-  std::vector<std::string> carry;  ///< fields of the input that go along; empty: all, "none": none
-  std::filesystem::path map_file;  ///< where old vertices and elements are now; empty: none
+  WriteOptions writing;                       ///< of all of them, whatever their formats
+  std::vector<std::string> carry;             ///< fields of the input that go along; empty: all, "none": none
+  std::filesystem::path map_file;             ///< where old vertices and elements are now; empty: none
   std::filesystem::path regions, point_sizes, size_field;  ///< files with sizes; empty: none
   std::string metric;                                      ///< FILE[:FIELD] with a metric; empty: none
   std::string field;                                       ///< of the input, of which a metric is made; empty: none
@@ -69,50 +62,23 @@ struct Arguments {
   std::vector<std::pair<std::string, std::string>> given;  ///< options and values as typed; flags are "true"
 };
 
-/// Declares what each command understands; defaults are those of Options. A field of Options has the name of its
-/// option, with underscores, unless said otherwise in `names`.
+/// What a command works on: files that become a surface, or a mesh. `what`: in words.
 void declare_input(CLI::App& command, Arguments& arguments, const std::string& what = {});
 void declare_mesh_input(CLI::App& command, Arguments& arguments);
-void declare_output(CLI::App& command, Arguments& arguments, const std::string& what, bool required);
-/// Several materials: how walls and bodies become regions.
-void declare_complex(CLI::App& command, Arguments& arguments);
-/// Sheets, lines and points inside.
-void declare_inside(CLI::App& command, Arguments& arguments);
-/// --split.
-void declare_split(CLI::App& command, Arguments& arguments);
-/// What is done about surfaces with defects.
-void declare_repair(CLI::App& command, Arguments& arguments);
-void declare_cad(CLI::App& command, Arguments& arguments);
-/// Bodies by a formula.
-void declare_formula(CLI::App& command, Arguments& arguments);
-/// -o, --format and --group of commands that write a mesh.
-void declare_mesh_output(CLI::App& command, Arguments& arguments);
-/// --report: the web page.
-void declare_page(CLI::App& command, Arguments& arguments);
-void declare_preset(CLI::App& command, Arguments& arguments);
-void declare_dry_run(CLI::App& command, Arguments& arguments);
-void declare_report(CLI::App& command, Arguments& arguments);
-void declare_run(CLI::App& command, Arguments& arguments);
-void declare_sizes(CLI::App& command, Arguments& arguments);
-void declare_surface(CLI::App& command, Arguments& arguments);
-void declare_periodic(CLI::App& command, Arguments& arguments);
-void declare_layers(CLI::App& command, Arguments& arguments);
-void declare_volume(CLI::App& command, Arguments& arguments);
-void declare_improvement(CLI::App& command, Arguments& arguments);
-/// --require-volume and --require-angle; `of_sizes`: --require-size, too.
-void declare_requirements(CLI::App& command, Arguments& arguments, bool of_sizes);
-void declare_ground(CLI::App& command, Arguments& arguments);
-/// How a mesh is adapted.
-void declare_adaptation(CLI::App& command, Arguments& arguments);
-void declare_order(CLI::App& command, Arguments& arguments);
-void declare_conversion(CLI::App& command, Arguments& arguments);
-void declare_solver(CLI::App& command, Arguments& arguments);
+
+/// Declares the options that the command of this name takes: the rows of the library's tables
+/// (octafront/option_table.h) and of line_options.h, group by group; only those of one group, where one is named. A
+/// field has the name of its option, with underscores, unless its row says otherwise.
+void declare_options(CLI::App& command, std::string_view name, Arguments& arguments, std::string_view group = {});
 
 /// The commands of the program.
 std::vector<const CLI::App*> commands_of(const CLI::App& app);
 
 /// Every option of a command, those of its groups too.
 std::vector<const CLI::Option*> options_of(const CLI::App& command);
+
+/// In a few words, of options that most people use; else empty.
+std::string brief_of(const CLI::App& command, const CLI::Option& option);
 
 /// Enters the command that was chosen into `arguments`: its name, its options as typed, the names of fields.
 void note_command(const CLI::App& command, Arguments& arguments);
@@ -139,15 +105,5 @@ struct Choice {
     throw CLI::ValidationError(option, "is one of " + listed(", ") + "; \"" + typed + "\" is none of them");
   }
 };
-
-/// NAME=box:x0,y0,z0,x1,y1,z1, NAME=sphere:x,y,z,r, NAME=patches:a,b,c, or with what is to be in the group before:
-/// NAME=elements:box:... Throws CLI::ValidationError.
-GroupRule group_rule(const std::string& typed);
-
-/// NAME=x,y,z. Throws CLI::ValidationError.
-RegionSeed region_seed(const std::string& typed);
-
-/// "1e5" is a number of elements too. Throws CLI::ValidationError.
-std::int64_t whole_number(const char* option, double n);
 
 }  // namespace octafront::cli

@@ -31,8 +31,6 @@ Options checked_options_of(const Session& session) {
   Options options = with_preset(a);
   if (!a.regions.empty()) options.size.regions = read_size_regions(a.regions.string(), session.context());
   if (!a.point_sizes.empty()) options.size.point_sizes = read_point_sizes(a.point_sizes.string(), session.context());
-  for (const std::string& place : a.only) options.adapt.only += (options.adapt.only.empty() ? "" : ";") + place;
-  for (const std::string& name : a.keep) options.adapt.keep += (options.adapt.keep.empty() ? "" : ";") + name;
   if (!a.size_field.empty()) read_sizes_into(options.size, a.size_field.string(), session.context());
   check_options(options);
   return options;
@@ -336,7 +334,8 @@ void refuse_for_surfaces(const Arguments& a) {
     if (given)
       throw OptionError(fmt::format("{} is for meshes of tetrahedra, and the input is a surface alone", option));
   };
-  refuse(!a.only.empty(), "--only"), refuse(!a.map_file.empty(), "--map"), refuse(!a.field.empty(), "--from");
+  refuse(!a.options.adapt.only.empty(), "--only"), refuse(!a.map_file.empty(), "--map"),
+      refuse(!a.field.empty(), "--from");
   refuse(!a.carry.empty(), "--carry"), refuse(!a.page.empty(), "--report"), refuse(!a.groups.empty(), "--group");
 }
 

@@ -33,89 +33,13 @@ std::vector<std::int64_t> whole_numbers(const std::string& option, const std::st
   return values;
 }
 
-/// Calls `take` with what stands behind an option, each time it stands there.
-template <class Take>
-CLI::Option* add(CLI::App& group, const std::string& option, const std::string& type, const std::string& help,
-                 const Take& take) {
-  return group
-      .add_option_function<std::vector<std::string>>(
-          option,
-          [take](const std::vector<std::string>& all) {
-            for (const std::string& typed : all) take(typed);
-          },
-          help)
-      ->type_name(type)
-      ->allow_extra_args(false);
-}
-
-void declare_values(CLI::App& group, ImageIntake& a) {
-  add(group, "--image", "auto|labels|grey",
-      "What the voxels hold; auto: labels if they are whole numbers that neighbours mostly share [auto]",
-      [&a](const std::string& typed) {
-        using Kind = ImageRegions::Kind;
-        a.regions.kind = typed == "labels" ? Kind::kLabels : typed == "grey" ? Kind::kGrey : Kind::kAuto;
-        if (typed != "labels" && typed != "grey" && typed != "auto")
-          refuse("--image", typed, "is none of auto, labels, grey");
-      });
-  add(group, "--iso", "V", "Grey image: what has this value or more is one region; its surface lies between voxels",
-      [&a](const std::string& typed) {
-        a.regions.bands.push_back({finite("--iso", typed, typed), std::numeric_limits<double>::infinity(), {}});
-      });
-  add(group, "--band", "[NAME=]LO:HI",
-      "Grey image: values from LO up to below HI are a region; several for several materials, which share their "
-      "surfaces; one end may be missing",
-      [&a](const std::string& typed) { a.regions.bands.push_back(grey_band(typed)); });
-  add(group, "--labels", "FILE",
-      "Names of labels: lines such as \"3 liver\", JSON, label files of ITK-SNAP, colour tables of 3D Slicer [those of "
-      "the file, else \"label 3\"]",
-      [&a](const std::string& typed) { a.names_file = typed; });
-  add(group, "--ignore", "A,B,...", "Labels outside of all regions; none: no label is [0]",
-      [&a](const std::string& typed) {
-        a.regions.labels.ignore =
-            typed == "none" ? std::vector<std::int64_t>{} : whole_numbers("--ignore", typed, typed);
-      });
-  add(group, "--merge", "A,B=NAME", "These labels are one region",
-      [&a](const std::string& typed) { a.regions.labels.merge.push_back(label_merge(typed)); });
-}
-
-void declare_cleaning(CLI::App& group, ImageIntake& a) {
-  const auto volume = [](const std::string& option, const std::string& typed) {
-    const double v = finite(option, typed, typed);
-    if (v < 0) refuse(option, typed, "is below 0");
-    return v;
-  };
-  add(group, "--islands", "V",
-      "Pieces of regions below this volume go to what surrounds them; each region keeps its largest",
-      [&a, volume](const std::string& typed) { a.regions.clean.islands = volume("--islands", typed); });
-  add(group, "--holes", "V", "Pieces of the outside below this volume, not at the image's edge, are filled",
-      [&a, volume](const std::string& typed) { a.regions.clean.holes = volume("--holes", typed); });
-  add(group, "--close-voxels", "N", "Gaps of regions toward the outside close that are up to 2 N voxels wide",
-      [&a](const std::string& typed) {
-        const std::int64_t n = whole("--close-voxels", typed, typed);
-        if (n < 0 || n > 64) refuse("--close-voxels", typed, "is not from 0 to 64");
-        a.regions.clean.closing = static_cast<std::uint32_t>(n);
-      });
-}
-
-void declare_grid(CLI::App& group, ImageIntake& a) {
-  add(group, "--crop", "I0:I1,J0:J1,K0:K1",
-      "Only these voxels along i, j and k, counted from 0, the last ones too; an end that is missing stays",
-      [&a](const std::string& typed) { a.crop = voxel_ranges(typed); });
-  add(group, "--resample", "S|SI,SJ,SK", "Voxels of this size, or of these along i, j and k, first",
-      [&a](const std::string& typed) {
-        a.resample.clear();
-        for (const std::string& word : CLI::detail::split(typed, ','))
-          a.resample.push_back(finite("--resample", typed, word));
-        if (a.resample.size() != 1 && a.resample.size() != 3)
-          refuse("--resample", typed, "is neither one size nor three");
-        for (const double s : a.resample)
-          if (!(s > 0)) refuse("--resample", typed, "has a size that is not above 0");
-      });
-  group
-      .add_flag_function(
-          "--closed-at-box", [&a](std::int64_t n) { a.regions.closed_at_box = n > 0; },
-          "What reaches the edge of the image ends flat there, which is said [yes]; --closed-at-box=no: it is refused")
-      ->type_name("");
+std::vector<double> spacing_of(const std::string& typed) {
+  std::vector<double> spacing;
+  for (const std::string& word : CLI::detail::split(typed, ',')) spacing.push_back(finite("--resample", typed, word));
+  if (spacing.size() != 1 && spacing.size() != 3) refuse("--resample", typed, "is neither one size nor three");
+  for (const double s : spacing)
+    if (!(s > 0)) refuse("--resample", typed, "has a size that is not above 0");
+  return spacing;
 }
 
 }  // namespace
@@ -161,21 +85,40 @@ std::array<VoxelRange, 3> voxel_ranges(const std::string& typed) {
   return ranges;
 }
 
-void declare_image_choice(CLI::App& command, ImageIntake& a) {
-  add(command, "--series", "N", "Which of several images of a folder or a file, counted from 1",
-      [&a](const std::string& typed) {
-        const std::int64_t n = whole("--series", typed, typed);
-        if (n < 1 || n > 0xffffffff) refuse("--series", typed, "is not counted from 1");
-        a.choice.series = static_cast<std::uint32_t>(n);
-      });
-}
-
-void declare_image(CLI::App& command, ImageIntake& a) {
-  auto* group = command.add_option_group("Images", "Voxels: a region per label, or per band of grey values");
-  declare_image_choice(*group, a);
-  declare_values(*group, a);
-  declare_cleaning(*group, a);
-  declare_grid(*group, a);
+std::vector<LineOption> image_line_options() {
+  constexpr std::string_view kCommands = "mesh surface size check", kGroup = "Images";
+  const auto to_image = [](auto take) {
+    return each([take](Arguments& a, const std::string& typed) { take(a.intake.image, typed); });
+  };
+  return {
+      {kCommands, kGroup, "--iso", "V",
+       "Grey image: what has this value or more is one region; its surface lies between voxels",
+       to_image([](ImageIntake& image, const std::string& typed) {
+         image.regions.bands.push_back({finite("--iso", typed, typed), std::numeric_limits<double>::infinity(), {}});
+       })},
+      {kCommands, kGroup, "--band", "[NAME=]LO:HI",
+       "Grey image: values from LO up to below HI are a region; several for several materials, which share their "
+       "surfaces; one end may be missing",
+       to_image([](ImageIntake& image, const std::string& typed) { image.regions.bands.push_back(grey_band(typed)); })},
+      {kCommands, kGroup, "--labels", "FILE",
+       "Names of labels: lines such as \"3 liver\", JSON, label files of ITK-SNAP, colour tables of 3D Slicer [those "
+       "of the file, else \"label 3\"]",
+       to_image([](ImageIntake& image, const std::string& typed) { image.names_file = typed; })},
+      {kCommands, kGroup, "--ignore", "A,B,...", "Labels outside of all regions; none: no label is [0]",
+       to_image([](ImageIntake& image, const std::string& typed) {
+         image.regions.labels.ignore =
+             typed == "none" ? std::vector<std::int64_t>{} : whole_numbers("--ignore", typed, typed);
+       })},
+      {kCommands, kGroup, "--merge", "A,B=NAME", "These labels are one region",
+       to_image([](ImageIntake& image, const std::string& typed) {
+         image.regions.labels.merge.push_back(label_merge(typed));
+       })},
+      {kCommands, kGroup, "--crop", "I0:I1,J0:J1,K0:K1",
+       "Only these voxels along i, j and k, counted from 0, the last ones too; an end that is missing stays",
+       to_image([](ImageIntake& image, const std::string& typed) { image.crop = voxel_ranges(typed); })},
+      {kCommands, kGroup, "--resample", "S|SI,SJ,SK", "Voxels of this size, or of these along i, j and k, first",
+       to_image([](ImageIntake& image, const std::string& typed) { image.resample = spacing_of(typed); })},
+  };
 }
 
 }  // namespace octafront::cli

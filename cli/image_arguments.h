@@ -2,16 +2,16 @@
 
 #include <octafront/domain.h>
 
-#include <CLI/CLI.hpp>
+#include "line_options.h"
+
 #include <array>
 #include <string>
+#include <vector>
 
 namespace octafront::cli {
 
-/// --series alone, for commands that only look.
-void declare_image_choice(CLI::App& command, ImageIntake& image);
-/// All of them.
-void declare_image(CLI::App& command, ImageIntake& image);
+/// Those of images that no row of the tables has.
+std::vector<LineOption> image_line_options();
 
 /// "[NAME=]LO:HI", one end may be missing. Throws CLI::ValidationError.
 GreyBand grey_band(const std::string& typed);

@@ -86,7 +86,7 @@ void tell_grid(Session& session, const Image& image) {
 void tell_labels(Session& session, const Image& image) {
   const std::vector<ValueCount> counts = *count_values(image);
   const double voxel = volume_of_voxel(image.grid);
-  Json all = Json::array();
+  Json all = Json::array(), regions = Json::array();
   constexpr std::size_t kListed = 40;
   session.say(
       fmt::format("  labels: {}; label, voxels{}\n", counts.size(), image.grid.slices.empty() ? ", volume" : ""));
@@ -97,13 +97,14 @@ void tell_labels(Session& session, const Image& image) {
     Json entry{{"value", counts[i].value}, {"voxels", counts[i].voxels}};
     if (!name.empty()) entry["name"] = name;
     all.push_back(entry);
+    if (counts[i].value != 0) regions.push_back(name.empty() ? fmt::format("label {}", counts[i].value) : name);
     if (i >= kListed) continue;
     const std::string volume =
         image.grid.slices.empty() ? fmt::format(" {:>12.6g}", voxel * static_cast<double>(counts[i].voxels)) : "";
     session.say(fmt::format("  {:>8} {:>12}{}  {}\n", counts[i].value, counts[i].voxels, volume, name));
   }
   if (counts.size() > kListed) session.say(fmt::format("  ... {} more (--json - has all)\n", counts.size() - kListed));
-  session.found({{"voxels", "labels"}, {"labels", all}});
+  session.found({{"voxels", "labels"}, {"labels", all}, {"places", {{"regions", regions}}}});
   session.say("octafront mesh makes a region of each label but 0\n");
 }
 

@@ -7,6 +7,8 @@
 #include "text.h"
 #include "units.h"
 
+#include <utility>
+
 #include <fmt/core.h>
 
 namespace octafront::cli {
@@ -30,6 +32,23 @@ std::string listed(const std::vector<std::string>& names) {
   return all;
 }
 
+/// What there is that options may name, for programs and in words.
+void tell_places(Session& session, const PlaceNames& names, bool in_words = true) {
+  constexpr std::size_t kListedPlaces = 24;
+  Json all = Json::object();
+  for (const auto& [kind, list] : {std::pair{"regions", &names.regions}, std::pair{"patches", &names.patches},
+                                   std::pair{"curves", &names.curves}, std::pair{"sets", &names.sets}}) {
+    all[kind] = *list;
+    if (list->empty() || !in_words) continue;
+    const bool is_long = list->size() > kListedPlaces;
+    const std::vector<std::string> first(list->begin(), list->begin() + (is_long ? kListedPlaces : list->size()));
+    session.say(fmt::format(
+        "  {}: {}{}\n", kind, listed(first),
+        is_long ? fmt::format(" ... and {} more: --json has all of them", list->size() - kListedPlaces) : ""));
+  }
+  session.found({{"places", all}});
+}
+
 // What a surface is, whatever is wrong with it: `check` judges.
 void tell_surface_info(Session& session) {
   const Arguments& a = session.arguments();
@@ -48,7 +67,8 @@ void tell_surface_info(Session& session) {
                  {"notes", file.notes}});
   session.say(fmt::format("  vertices {}, as the file has them\n  {}\n  area {:.6g}\n  unit: {}\n", s.points.size(),
                           box_in_words(box), area(s), unit.empty() ? "the file does not say" : unit));
-  if (!s.patch_names.empty()) session.say(fmt::format("  patches: {}\n", listed(s.patch_names)));
+  // Triangles of STL share no vertices.
+  tell_places(session, place_names(repair_surface(s, session.context()).surface));
   session.say("octafront check says whether it can be meshed, octafront mesh --dry-run what that would take\n");
 }
 
@@ -73,6 +93,11 @@ void tell_cad_info(Session& session) {
   for (const CadInfo::Group& group : info.groups)
     session.say(fmt::format("  {}: {}\n", group.name,
                             group.faces > 0 ? counted(group.faces, "face") : counted(group.solids, "solid")));
+  PlaceNames names;
+  for (const CadInfo::Solid& solid : info.solids) names.regions.push_back(solid.name);
+  for (const CadInfo::Group& group : info.groups) names.sets.push_back(group.name);
+  names.patches = info.faces, names.curves = info.edges;
+  tell_places(session, names);
   session.say("octafront mesh --dry-run says what meshing would take\n");
 }
 
@@ -88,6 +113,7 @@ void tell_mesh_info(Session& session, const TetMesh& mesh) {
   session.say(
       fmt::format("  {}\n  volume {:.6g}, order {}\n", box_in_words(box), volume, mesh.is_second_order() ? 2 : 1));
   tell_mesh(session, mesh, "a mesh");
+  tell_places(session, place_names(mesh), false);  // its groups are told, with how large they are
 }
 
 /// Whether the input is a background grid.

@@ -36,18 +36,12 @@ std::string term_of(const CLI::Option& option) {
   return value.empty() ? term : term + " \\fI" + plain(value) + "\\fR";
 }
 
-std::string described(const CLI::Option& option) {
-  std::string text = option.get_description();
-  if (!option.get_default_str().empty()) text += " [" + option.get_default_str() + "]";
-  return plain(text);
-}
-
 std::string options_in(const CLI::App& group) {
   std::string text;
   const bool is_command = !group.get_name().empty();
   for (const CLI::Option* option : group.get_options())
     if (is_command || option != group.get_help_ptr())
-      text += ".TP\n" + term_of(*option) + "\n" + described(*option) + "\n";
+      text += ".TP\n" + term_of(*option) + "\n" + plain(option->get_description()) + "\n";
   for (const CLI::App* inner : group.get_subcommands([](const CLI::App*) { return true; })) {
     if (!inner->get_name().empty()) continue;
     text += fmt::format(".PP\n\\fI{}\\fR{}\n", plain(inner->get_group()),

@@ -4,7 +4,7 @@ namespace octafront::cli {
 
 namespace {
 
-constexpr std::string_view kFieldCharacters = "abcdefghijklmnopqrstuvwxyz_";
+constexpr std::string_view kFieldCharacters = "abcdefghijklmnopqrstuvwxyzRL_";
 
 }  // namespace
 

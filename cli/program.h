@@ -7,7 +7,8 @@
 
 namespace octafront::cli {
 
-/// The commands and options of the program: the one table that parsing, help, man page and completions come from.
+/// The commands and options of the program: the one table that parsing, help, man page, completions and schema come
+/// from.
 class Program {
  public:
   Program();
@@ -23,15 +24,13 @@ class Program {
  private:
   CLI::App* add(const std::string& name, const std::string& help, const std::string& examples,
                 std::function<void(Session&)> run);
-  void declare_makers();
-  void declare_surfaces();
-  void declare_lookers();
+  void declare_commands();
   void declare_helpers();
   void help(Session& session) const;
 
   CLI::App app_{"Octafront: tetrahedral meshes from closed surfaces", "octafront"};
   Arguments arguments_;
-  std::string topic_, shell_;
+  std::string topic_, group_, shell_;
   bool wants_manual_ = false;
   std::function<void(Session&)> chosen_;
 };

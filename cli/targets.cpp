@@ -33,7 +33,7 @@ bool holds_parts(const Arguments& a, std::size_t i) {
 
 /// Among several outputs those are divided that hold parts, if some do.
 bool takes_parts(const Arguments& a, std::size_t i) {
-  if (a.parts == 0 || a.meshes.size() == 1 || holds_parts(a, i)) return true;
+  if (a.writing.parts == 0 || a.meshes.size() == 1 || holds_parts(a, i)) return true;
   for (std::size_t other = 0; other < a.meshes.size(); ++other)
     if (holds_parts(a, other)) return false;
   return true;
@@ -41,15 +41,9 @@ bool takes_parts(const Arguments& a, std::size_t i) {
 
 /// How the output of this number is written.
 WriteOptions options_of(const Arguments& a, std::size_t i) {
-  WriteOptions options{.format = a.formats.empty() ? "" : a.formats[i],
-                       .ascii = a.ascii,
-                       .cells_only = a.cells_only,
-                       .cohesive = a.cohesive,
-                       .beams = a.beams};
-  if (!takes_parts(a, i)) return options;
-  options.parts = static_cast<std::uint32_t>(a.parts);
-  options.partitioner = a.partitioner;
-  options.split_files = a.split_files;
+  WriteOptions options = a.writing;
+  if (!a.formats.empty()) options.format = a.formats[i];
+  if (!takes_parts(a, i)) options.parts = 0, options.partitioner = Partitioner::kCurve, options.split_files = false;
   return options;
 }
 
@@ -217,7 +211,7 @@ bool takes_shares(const Arguments& a) {
   const auto is_pvtu = [&](std::size_t i) { return format_for(a.meshes[i].string(), options_of(a, i)).name == "pvtu"; };
   for (std::size_t i = 0; i < a.meshes.size(); ++i)
     if (!is_pvtu(i)) return false;
-  return a.parts == 0 && a.page.empty() && a.groups.empty() && !a.ascii && !a.cells_only;
+  return a.writing.parts == 0 && a.page.empty() && a.groups.empty() && !a.writing.ascii && !a.writing.cells_only;
 }
 
 void write_share_targets(Session& session, const TetMesh& share) {

@@ -1,6 +1,7 @@
 #include "units.h"
 
 #include <octafront/error.h>
+#include <octafront/option_table.h>
 #include <octafront/units.h>
 
 #include "arguments.h"
@@ -40,12 +41,13 @@ void convert_lengths(Arguments& a) {
   if (a.lengths.empty()) return;
   const std::string of_file = a.unit.empty() ? unit_of_file(a.input.string()) : a.unit;
   for (const TypedLength& length : a.lengths) {
+    const double typed = std::get<double>(option_value(a.options, length.name));
     if (of_file.empty())
       throw OptionError(
           fmt::format("{} {}{}: {} does not say what its coordinates count; add --unit mm, or whatever "
                       "they are, or give the length without a unit",
-                      length.option, **length.value, length.unit, a.input.string()));
-    *length.value = **length.value * unit_named(length.unit)->metres / unit_named(of_file)->metres;
+                      length.option, typed, length.unit, a.input.string()));
+    set_option(a.options, length.name, typed * unit_named(length.unit)->metres / unit_named(of_file)->metres);
   }
   a.unit = of_file;
 }

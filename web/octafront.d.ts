@@ -90,7 +90,7 @@ export interface Mesh {
 export interface Info {
   version: string;
   formats: { name: string; title: string; endings: string; reads_surface: boolean; writes_surface: boolean; reads_mesh: boolean; writes_mesh: boolean; carries: string }[];
-  options: { name: string; group: string; tasks: string; kind: "number" | "whole" | "flag" | "choice" | "text"; choices: string[]; default: number | string | boolean | null; help: string }[];
+  options: { name: string; group: string; tasks: string; kind: "number" | "whole" | "flag" | "choice" | "text"; choices: string[]; default: number | string | boolean | null; without: string; range: string; is_length: boolean; help: string }[];
   intake: Info["options"];
   units: { name: string; metres: number; words: string[] }[];
 }

@@ -35,6 +35,7 @@ struct CadInfo {
   Box3 box;
   std::vector<Solid> solids;
   std::vector<std::string> faces;  ///< their names, of the solids and of those beside them
+  std::vector<std::string> edges;  ///< between faces, by the faces that meet: "face 1|face 2"; each name once
   std::vector<Group> groups;
   std::uint64_t named_faces = 0;   ///< that have a name in the file
   std::vector<std::string> notes;  ///< what was found, healed, fused

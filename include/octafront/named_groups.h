@@ -12,6 +12,8 @@
 
 namespace octafront {
 
+struct SurfaceMesh;
+
 /// What MEDIT's files (those of MMG, FreeFEM, ...) know of the entities of a mesh. Sets of a mesh that are called so,
 /// and are of this kind, are these; other formats hold them as sets with these names. What is required keeps its place,
 /// and as an edge, face or element its vertices, whatever is done to the mesh.
@@ -50,6 +52,15 @@ std::vector<PlacedSet> placed_sets(const TetMesh& mesh);
 /// empty string.
 std::string add_placed_sets(TetMesh& mesh, std::span<const PlacedSet> sets);
 
+/// What options that take a place may name (docs/use/places.md): names, "patch_3" and the like of what has none. Of a
+/// surface that has no `sides` cells are not looked for: its one region is "body", and of one with walls inside none is
+/// named.
+struct PlaceNames {
+  std::vector<std::string> regions, patches, curves, sets;
+};
+PlaceNames place_names(const SurfaceMesh& surface);
+PlaceNames place_names(const TetMesh& mesh);
+
 /// What a further set of a mesh is to hold.
 struct GroupRule {
   struct Sphere {
@@ -57,14 +68,17 @@ struct GroupRule {
     double radius = 0;  ///< > 0
   };
   std::string name;
-  NamedSet::Kind kind = NamedSet::Kind::kNodes;  ///< in a box or sphere; of patches: always faces
-  /// A closed box, a closed ball, or patches by name or number (from 1).
-  std::variant<Box3, Sphere, std::vector<std::string>> where;
+  NamedSet::Kind kind = NamedSet::Kind::kNodes;  ///< in a box or sphere; of what has a name: whatever it holds
+  /// A closed box, a closed ball, patches, or one region, patch, curve or set; by name or number (docs/use/places.md).
+  std::variant<Box3, Sphere, std::vector<std::string>, std::string> where;
 };
+/// Reads NAME=PLACE (docs/use/places.md), or with a kind before a box or sphere, NAME=elements:box:... Throws
+/// OptionError.
+GroupRule group_rule(const std::string& text);
 
 /// Adds the set to the mesh: nodes in the box or ball; faces of boundary and interfaces, curve edges or elements whose
-/// corners all are; or the faces of the patches. Returns a sentence for the user where there is something to say: no
-/// such patch, nothing found (then no set is added); else an empty string.
+/// corners all are; the faces of the patches; or what is called so, a set for each kind. Returns a sentence for the
+/// user where there is something to say: no such patch, nothing found (then no set is added); else an empty string.
 std::string add_group(TetMesh& mesh, const GroupRule& rule);
 
 /// Adds the lines along which patches of the boundary and of interfaces meet, or a patch ends, as curves: one for each

@@ -44,8 +44,8 @@ enum {
 const char* octafront_version(void);
 /** What is wrong, of the last call of this thread that failed. */
 const char* octafront_last_error(void);
-/** JSON, an array: name, field, group, tasks, kind, choices, default, help of each option (octafront/option_table.h).
- */
+/** JSON, an array: name, field, group, tasks, kind, choices, default, without, range, is_length, help of each option
+ * (octafront/option_table.h). */
 const char* octafront_option_table(void);
 /** The same of what is asked on the way in, IntakeOptions: keys for octafront_open_files() and its like. */
 const char* octafront_intake_table(void);

@@ -21,9 +21,9 @@ namespace octafront {
 ///
 /// Returns sentences for the user: what was done. Throws OptionError, before any change, where a patch does not exist
 /// or has no face inside. O(mesh).
-std::vector<std::string> split_patches(TetMesh& mesh, const std::vector<std::string>& patches);
+std::vector<std::string> split_patches(TetMesh& mesh, const std::vector<std::string>& places);
 
 /// Throws OptionError if a mesh of this complex would have nothing to split under one of these names.
-void check_split(const SurfaceMesh& complex, const std::vector<std::string>& patches);
+void check_split(const SurfaceMesh& complex, const std::vector<std::string>& places);
 
 }  // namespace octafront

@@ -9,7 +9,7 @@ import sys
 
 from octafront._library import intake_table, option_table
 from octafront._options import keywords_of
-from octafront._units import LENGTHS
+from octafront._units import lengths
 
 TEMPLATE = '''\
 # Made by python/backend/make_stubs.py: edit that.
@@ -262,8 +262,8 @@ KINDS = {"number": "float", "whole": "int", "flag": "bool", "text": "str"}
 
 
 def declared(row):
-    kind = f"Literal[{', '.join(map(repr, row['choices']))}]" if row["choices"] else KINDS[row["kind"]]
-    if row["name"] in LENGTHS:
+    kind = f"Literal[{', '.join(map(repr, row['choices']))}]" if row["kind"] == "choice" else KINDS[row["kind"]]
+    if row["name"] in lengths():
         kind += " | str"
     if row["name"] == "size":
         kind += " | SizeFunction | SizeField"

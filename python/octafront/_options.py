@@ -266,10 +266,12 @@ def _described(task):
         if row["group"] != group:
             group = row["group"]
             lines.append(f"{group}:")
-        default = "" if row["default"] is None or row["kind"] == "flag" else f" [{row['default']}]"
+        without = row["without"] or ("" if row["default"] is None or row["kind"] == "flag" else row["default"])
+        default = f" [{without}]" if without != "" else ""
+        bounds = f"; {row['range']}" if row["range"] and not row["choices"] else ""
         choices = f" One of {', '.join(row['choices'])}." if row["choices"] else ""
         more = " Or a function: sizes (n,) at points (n, 3)." if row["name"] == "size" else ""
-        lines += _entry(row["name"], f"{row['help']}.{choices}{more}{default}")
+        lines += _entry(row["name"], f"{row['help']}{bounds}.{choices}{more}{default}")
     lines.append("Further:")
     for name, text in _further(task):
         lines += _entry(name, text + ".")

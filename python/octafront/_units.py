@@ -6,10 +6,12 @@ import re
 
 from . import errors
 from ._images import are_files, is_file
-from ._library import call, file_of, text_of
+from ._library import call, file_of, option_table, text_of
 
-# Keywords that take them.
-LENGTHS = ("size", "min_size", "max_size", "max_deviation", "first", "total", "Lref")
+
+def lengths():
+    """Keywords that take them."""
+    return [row["name"] for row in option_table() if row["is_length"]]
 
 
 @functools.lru_cache(maxsize=None)
@@ -33,7 +35,7 @@ def convert_lengths(given, source):
     unit = given.pop("unit", None)
     if unit is not None and str(unit).lower() not in _metres():
         raise errors.OptionError(f"`unit` is {unit!r}: it is one of {_names()}")
-    for name in LENGTHS:
+    for name in lengths():
         if isinstance(given.get(name), str):
             number, word = _taken_apart(name, given[name])
             if word:

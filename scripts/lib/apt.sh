@@ -35,8 +35,8 @@ format_packages=(gmsh python3-gmsh calculix-ccx python3-meshio python3-netcdf4 p
 doc_packages=(doxygen python3-sphinx mypy)
 # What opens the report page (tests/report/page): also of --all.
 browser_packages=(chromium chromium-driver python3-selenium fonts-dejavu-core)
-# What reads manual and completions (tests/cli): also of --all; without them these are read by fewer programs.
-shell_packages=(groff zsh fish)
+# What reads manual, completions and schema (tests/cli): also of --all; without them these are read by fewer programs.
+shell_packages=(groff zsh fish python3-jsonschema)
 # What reads images beside us (tests/images): also of --all.
 image_packages=(python3-nibabel python3-pydicom)
 # Other meshers, which some benchmarks run beside ours.

@@ -16,6 +16,8 @@ import unittest
 import xml.etree.ElementTree
 import zlib
 
+from report_schema import expect_report
+
 OCTAFRONT, SAMPLES = sys.argv[1], pathlib.Path(sys.argv[2])
 
 TETRAHEDRON = """OFF
@@ -45,6 +47,9 @@ class CommandLine(unittest.TestCase):
         options = {"stdout": subprocess.PIPE, "stderr": subprocess.PIPE, **options}
         done = subprocess.run([OCTAFRONT, *map(str, arguments)], text=True, timeout=120, errors="replace", **options)
         self.assertEqual(done.returncode, status, f"{done.stdout}{done.stderr}")
+        words = [str(word) for word in arguments]
+        if status not in (2, 5) and "--json" in words and words[words.index("--json") + 1].endswith(".json"):
+            expect_report(self, OCTAFRONT, json.loads(pathlib.Path(words[words.index("--json") + 1]).read_text()))
         return done
 
     def files(self):
@@ -272,7 +277,7 @@ class CommandLine(unittest.TestCase):
     def test_a_group_of_nothing_is_said_under_quiet_too(self):
         done = self.run_cli("mesh", self.part, "-q", "-o", self.dir / "a.vtu", "--group", "g=patches:none")
         self.assertEqual(done.stdout, "")
-        self.assertIn('the mesh has no patch "none"', done.stderr)
+        self.assertIn('there is no patch "none"', done.stderr)
 
     def test_parts_for_structures_hear_of_second_order(self):
         program = pathlib.Path(OCTAFRONT).parent / "../cad/octafront-cad"
@@ -667,7 +672,7 @@ class CommandLine(unittest.TestCase):
         self.assertNotIn("o.vtu", self.files())
 
     def test_help_and_version(self):
-        self.assertIn("Sizes", self.run_cli("mesh", "--help").stdout)
+        self.assertIn("sizes", self.run_cli("mesh", "--help").stdout)
         self.assertRegex(self.run_cli("--version").stdout, r"\d+\.\d+\.\d+")
 
     def refuse(self, text, fragment, name="bad.off"):
@@ -1061,6 +1066,31 @@ class CommandLine(unittest.TestCase):
         self.run_cli("convert", mesh, "-o", self.dir, "--format", "openfoam", status=5)
         for bad in ("held", "=box:1,2,3,4,5,6", "a=box:1,2,3", "a=cone:1,2", "a=sphere:0,0,0,-1", "a=box:1,2,3,4,5,x"):
             self.run_cli("convert", mesh, "-o", self.dir / "d.msh", "--group", bad, status=2)
+
+    def test_places_are_named_alike_by_every_option(self):
+        """Patches without names, by the names that the file written gives them."""
+        bracket, out = SAMPLES / "bracket.stl", self.dir / "m.msh"
+        make = ("mesh", bracket, "-o", out, "--size", 8, "--patches")
+        patches = lambda: {g["name"]: g["size"] for g in json.loads(
+            self.run_cli("info", out, "--json", "-").stdout)["groups"] if g["origin"] == "patch"}
+        self.run_cli(*make)
+        plain = patches()
+        for place in ("patch_3", "3", "patches:patch_3"):
+            self.run_cli(*make, "--size-of", f"{place}=4")
+            self.assertGreater(patches()["patch_3"], 1.5 * plain["patch_3"], place)
+            report = self.dir / "layers.json"
+            self.run_cli(*make, "--layers", 1, "--first", 0.2, "--on", place, "--json", report)
+            self.assertEqual([w["patch"] for w in json.loads(report.read_text())["layers"]], ["patch_3"])
+            self.run_cli(*make, "--size-near", f"{place}=4:10", "--group", f"g={place}")
+            self.run_cli("adapt", out, "--size", 8, "--only", place, "--keep", "patch_1", "-o", self.dir / "b.msh")
+        self.run_cli(*make, "--size-of", "box:-1e3,-1e3,-1e3,1e3,1e3,1e3=6", "--size-near", "sphere:0,0,0,1=4:10")
+        for option, place in (("--size-of", "lid=2"), ("--on", "lid"), ("--size-near", "lid=2:3")):
+            layers = ["--layers", 1, "--first", 0.2] if option == "--on" else []
+            done = self.run_cli(*make, option, place, *layers, status=2)
+            self.assertIn('"lid"', done.stderr)
+            self.assertIn('"patch_3"', done.stderr)
+            self.assertIn(option, done.stderr)
+        self.run_cli(*make, "--layers", 1, "--first", 0.2, "--layers-in", "body")
 
     def test_damaged_hdf5_files_do_not_end_the_program(self):
         """One in forty of such changes crashes libhdf5 1.10."""

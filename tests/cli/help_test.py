@@ -12,6 +12,8 @@ import tempfile
 import time
 import unittest
 
+from report_schema import expect_report
+
 OCTAFRONT, SAMPLES = sys.argv[1], pathlib.Path(sys.argv[2])
 BRACKET = SAMPLES / "bracket.stl"
 
@@ -39,6 +41,8 @@ class Help(unittest.TestCase):
         self.assertEqual(done.returncode, status, f"{done.stdout}{done.stderr}")
         done.out = (done.stdout or b"").decode(errors="replace")
         done.err = (done.stderr or b"").decode(errors="replace")
+        if "--json" in arguments and "-" in arguments and done.out:
+            expect_report(self, OCTAFRONT, json.loads(done.out))
         return done
 
     def json_of(self, *arguments, status=0):
@@ -51,7 +55,8 @@ class Help(unittest.TestCase):
         return re.findall(r"^  (\w+) ", block, re.M)
 
     def options(self, command):
-        return set(re.findall(r"(--[A-Za-z][A-Za-z-]+)", self.run_cli(command, "--help").out.split("Examples:")[0]))
+        terms = re.findall(r"^  (-\S+)", self.run_cli("help", command, "all").out, re.M)
+        return {name for term in terms for name in term.split(",") if name.startswith("--")}
 
     def test_help_of_a_command_has_options_and_examples_that_run(self):
         for command in self.commands():
@@ -59,6 +64,24 @@ class Help(unittest.TestCase):
             self.assertIn("Examples:", text, command)
             self.assertEqual(text, self.run_cli(command, "--help").out, command)
         self.assertIn("did you mean mesh?", self.run_cli("help", "mehs", status=2).err)
+
+    def test_help_fits_a_screen_and_leads_to_the_rest(self):
+        for command in self.commands():
+            lines = self.run_cli("help", command).out.splitlines()
+            self.assertLessEqual(len(lines), 45, command)
+            self.assertLessEqual(max(map(len, lines)), 100, command)
+        brief = self.run_cli("help", "mesh").out
+        self.assertEqual(len(re.findall(r"^  (?:-\w,)?--", brief, re.M)), 20)
+        groups = re.findall(r"(\w+) \d+", brief.split("a group of")[1].split("or all")[0])
+        shown = []
+        for group in groups:
+            text = self.run_cli("help", "mesh", group).out
+            shown += re.findall(r"^  (?:-\w,)?(--[\w-]+)", text, re.M)
+        self.assertEqual(len(shown), len(set(shown)))
+        self.assertEqual(set(shown) | {"--help"}, set(re.findall(r"^  (?:-\w,)?(--[\w-]+)", self.run_cli("help", "mesh", "all").out, re.M)))
+        for knob in ("--queue", "--ranking", "--facets", "--ideal-distance", "--core", "--relaxation", "--sweeps"):
+            self.assertIn(knob, self.run_cli("help", "mesh", "paper").out)
+        self.assertIn("sizes, surface, ", self.run_cli("help", "mesh", "colours", status=2).err)
 
     def test_examples_are_valid(self):
         for part in ("part.stl", "scan.ply", "a.stl", "b.ply", "part.obj", "plate.stl", "soup.obj"):
@@ -142,12 +165,14 @@ printf '%s\\n' "${{COMPREPLY[@]}}" """
         surface = self.json_of("info", BRACKET)
         self.assertEqual((surface["kind"], surface["unit"]), ("surface", ""))
         self.assertAlmostEqual(surface["area"], 10500, delta=10500)
+        self.assertEqual(surface["places"], {"regions": ["body"], "patches": ["patch_1"], "curves": [], "sets": []})
         self.assertLess(surface["box"][0][0], surface["box"][1][0])
         self.run_cli("mesh", BRACKET, "-o", self.dir / "m.msh", "--size", 6, "--order", 2)
         mesh = self.json_of("info", self.dir / "m.msh")
         self.assertEqual((mesh["kind"], mesh["order"]), ("mesh", 2))
         self.assertGreater(mesh["volume"], 20000)
         self.assertTrue(any(g["origin"] == "patch" for g in mesh["groups"]))
+        self.assertEqual([g["name"] for g in mesh["groups"]], mesh["places"]["regions"] + mesh["places"]["patches"])
         self.run_cli("size", BRACKET, "-o", self.dir / "s.vtu", "--size", 3)
         field = self.json_of("info", self.dir / "s.vtu")
         self.assertEqual(field["kind"], "size field")

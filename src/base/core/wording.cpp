@@ -40,6 +40,10 @@ std::vector<std::string> names_listed(const std::string& list, std::span<const s
   return names;
 }
 
+std::string region_label(const std::string& name, std::size_t region, std::size_t regions) {
+  return !name.empty() ? name : regions == 1 ? "body" : fmt::format("body_{}", region + 1);
+}
+
 std::string at_point(Vec3 p) {
   // Adding 0 keeps "-0" out of messages.
   return fmt::format("({:.6g}, {:.6g}, {:.6g})", p.x + 0.0, p.y + 0.0, p.z + 0.0);

@@ -22,6 +22,9 @@ std::string in_faces(std::span<const std::uint32_t> faces);
 /// comes first. None of an empty list.
 std::vector<std::string> names_listed(const std::string& list, std::span<const std::string> known);
 
+/// What a region of so many is called: `name`, or "body_3" the third where it has none, "body" the only one.
+std::string region_label(const std::string& name, std::size_t region, std::size_t regions);
+
 /// "(0.31, 2, 0.5)"
 std::string at_point(Vec3 p);
 

@@ -4,6 +4,7 @@
 #include <octafront/surface_mesh.h>
 
 #include "base/core/disjoint_sets.h"
+#include "base/core/wording.h"
 #include "base/mesh/face_table.h"
 
 #include <algorithm>
@@ -95,7 +96,7 @@ std::vector<double> volumes_of_regions(const SurfaceMesh& complex) {
 std::string region_name(const SurfaceMesh& complex, std::uint32_t region) {
   if (region < complex.region_names.size() && !complex.region_names[region].empty())
     return complex.region_names[region];
-  return fmt::format("region {}", region + 1);
+  return region_label("", region, region_count(complex));
 }
 
 SurfaceMesh hull_of(const SurfaceMesh& complex) {

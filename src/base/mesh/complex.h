@@ -29,7 +29,7 @@ std::uint32_t region_count(const SurfaceMesh& complex);
 /// digits however far away the others are. Unit: input unit cubed.
 std::vector<double> volumes_of_regions(const SurfaceMesh& complex);
 
-/// The name of a region, or "region 3" for the third where it has none.
+/// What a region is called: region_label().
 std::string region_name(const SurfaceMesh& complex, std::uint32_t region);
 
 /// What lies between the regions and the outside, facing outward; a surface without `sides`, on the same points.

@@ -5,7 +5,6 @@
 #include "base/mesh/face_table.h"
 
 #include <algorithm>
-#include <charconv>
 #include <cstring>
 #include <map>
 #include <optional>
@@ -18,67 +17,6 @@ namespace octafront {
 namespace {
 
 using Kind = NamedSet::Kind;
-
-/// The points that lie where the rule says.
-std::vector<bool> points_within(const TetMesh& mesh, const GroupRule& rule) {
-  std::vector<bool> inside(mesh.points.size());
-  for (std::size_t v = 0; v < inside.size(); ++v) {
-    const Vec3 p = mesh.points[v];
-    if (const auto* box = std::get_if<Box3>(&rule.where)) {
-      inside[v] = true;
-      for (int axis = 0; axis < 3; ++axis)
-        inside[v] = inside[v] && p[axis] >= box->lo[axis] && p[axis] <= box->hi[axis];
-    } else {
-      const auto& ball = std::get<GroupRule::Sphere>(rule.where);
-      inside[v] = squared_length(p - ball.center) <= ball.radius * ball.radius;
-    }
-  }
-  return inside;
-}
-
-template <class Rows>
-void add_rows_within(const Rows& rows, const std::vector<bool>& inside, std::uint32_t first,
-                     std::vector<std::uint32_t>& members) {
-  for (std::uint32_t i = 0; i < rows.size(); ++i)
-    if (std::all_of(rows[i].begin(), rows[i].end(), [&](VertexIndex v) { return inside[v]; }))
-      members.push_back(first + i);
-}
-
-std::vector<std::uint32_t> members_within(const TetMesh& mesh, const GroupRule& rule) {
-  const std::vector<bool> inside = points_within(mesh, rule);
-  std::vector<std::uint32_t> members;
-  if (rule.kind == Kind::kNodes)
-    for (VertexIndex v = 0; v < inside.size(); ++v)
-      if (inside[v]) members.push_back(v);
-  if (rule.kind == Kind::kElements) add_rows_within(mesh.tets, inside, 0, members);
-  if (rule.kind == Kind::kEdges) add_rows_within(mesh.curve_edges, inside, 0, members);
-  if (rule.kind == Kind::kFaces) {
-    add_rows_within(mesh.boundary, inside, 0, members);
-    add_rows_within(mesh.interfaces, inside, static_cast<std::uint32_t>(mesh.boundary.size()), members);
-  }
-  return members;
-}
-
-/// The number of a patch by its name, or by its number from 1; kNone if there is none.
-std::uint32_t patch_called(const TetMesh& mesh, const std::string& name) {
-  const auto named = std::find(mesh.patch_names.begin(), mesh.patch_names.end(), name);
-  if (named != mesh.patch_names.end()) return static_cast<std::uint32_t>(named - mesh.patch_names.begin());
-  std::uint32_t number = 0;
-  const auto [stop, error] = std::from_chars(name.data(), name.data() + name.size(), number);
-  return error == std::errc() && stop == name.data() + name.size() && number > 0 ? number - 1 : kNone;
-}
-
-std::vector<std::uint32_t> members_of_patches(const TetMesh& mesh, const std::vector<std::uint32_t>& patches) {
-  std::vector<std::uint32_t> members;
-  const auto add = [&](std::size_t faces, const std::vector<std::uint32_t>& patch, std::size_t first) {
-    for (std::size_t f = 0; f < faces; ++f)
-      if (std::find(patches.begin(), patches.end(), patch.empty() ? 0 : patch[f]) != patches.end())
-        members.push_back(static_cast<std::uint32_t>(first + f));
-  };
-  add(mesh.boundary.size(), mesh.patch, 0);
-  add(mesh.interfaces.size(), mesh.interface_patch, mesh.boundary.size());
-  return members;
-}
 
 /// Per place the vertex of a mesh that is at the same coordinates; kNone where there is none.
 std::vector<VertexIndex> same_places(std::span<const Vec3> from, const TetMesh& to) {
@@ -248,29 +186,6 @@ std::string add_placed_sets(TetMesh& mesh, std::span<const PlacedSet> sets) {
                                                         : "faces");
   return missing.empty() ? missing
                          : "sets that the new mesh has not, or not whole, for it has other nodes there: " + missing;
-}
-
-std::string add_group(TetMesh& mesh, const GroupRule& rule) {
-  NamedSet set{rule.name, rule.kind, {}};
-  std::string unknown;
-  if (const auto* names = std::get_if<std::vector<std::string>>(&rule.where)) {
-    set.kind = Kind::kFaces;
-    std::vector<std::uint32_t> patches;
-    for (const std::string& name : *names) {
-      patches.push_back(patch_called(mesh, name));
-      if (members_of_patches(mesh, {patches.back()}).empty())
-        unknown += fmt::format("{}\"{}\"", unknown.empty() ? "" : ", ", name);
-    }
-    set.members = members_of_patches(mesh, patches);
-  } else {
-    set.members = members_within(mesh, rule);
-  }
-  const bool is_empty = set.members.empty();
-  if (!is_empty) mesh.sets.push_back(std::move(set));
-  if (!unknown.empty())
-    return fmt::format("group \"{}\": the mesh has no patch {}{}", rule.name, unknown,
-                       is_empty ? "; it is left out" : "");
-  return is_empty ? fmt::format("group \"{}\": nothing lies there; it is left out", rule.name) : std::string();
 }
 
 void add_patch_curves(TetMesh& mesh) {

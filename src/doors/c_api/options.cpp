@@ -59,6 +59,9 @@ std::string described(const std::vector<OptionInfo>& table) {
                    {"kind", name_of_kind(info.kind)},
                    {"choices", info.choices},
                    {"default", json_of_value(option_value(defaults, info.name))},
+                   {"without", info.unset},
+                   {"range", info.range()},
+                   {"is_length", info.is_length},
                    {"help", info.help}});
   }
   return all.dump();

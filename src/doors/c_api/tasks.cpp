@@ -7,6 +7,7 @@
 #include <octafront/generate.h>
 #include <octafront/improve_existing.h>
 #include <octafront/io.h>
+#include <octafront/option_table.h>
 #include <octafront/repair.h>
 #include <octafront/report_page.h>
 #include <octafront/second_order.h>
@@ -45,27 +46,14 @@ Json json_of_repair(const RepairedSurface& r) {
           {"notes", r.notes}};
 }
 
-/// 0: the mesh as one.
-std::uint32_t number_of_parts(const Json& value) {
-  constexpr std::int64_t kMost = 1'000'000;
-  if (!value.is_number_integer() || value.get<std::int64_t>() < 0 || value.get<std::int64_t>() > kMost)
-    throw OptionError(fmt::format("`parts` is a whole number from 1 to {}, not {}", kMost, value.dump()));
-  return value.get<std::uint32_t>();
-}
-
+/// Other keys of `json` are for the task itself.
 WriteOptions write_options_from(const Json& json) {
   WriteOptions options;
-  with(json, "format", [&](const Json& value) { options.format = value.get<std::string>(); });
-  with(json, "ascii", [&](const Json& value) { options.ascii = value.get<bool>(); });
-  with(json, "cells_only", [&](const Json& value) { options.cells_only = value.get<bool>(); });
-  with(json, "parts", [&](const Json& value) { options.parts = number_of_parts(value); });
-  with(json, "partitioner", [&](const Json& value) {
-    options.partitioner = one_of<Partitioner>({{"curve", Partitioner::kCurve}, {"metis", Partitioner::kMetis}},
-                                              value.get<std::string>(), "partitioner");
-  });
-  with(json, "split_files", [&](const Json& value) { options.split_files = value.get<bool>(); });
-  with(json, "beams", [&](const Json& value) { options.beams = value.get<std::string>(); });
-  with(json, "cohesive", [&](const Json& value) { options.cohesive = value.get<bool>(); });
+  for (const OptionInfo& info : write_table()) {
+    const std::string name(info.name);
+    with(json, name.c_str(), [&](const Json& value) { set_option(options, name, value_of(name, value)); });
+  }
+  check_ranges(options);
   return options;
 }
 

@@ -32,11 +32,17 @@ std::string to_json(const CadInfo& info) {
   Json groups = Json::array();
   for (const CadInfo::Group& group : info.groups)
     groups.push_back({{"name", group.name}, {"faces", group.faces}, {"solids", group.solids}});
-  const Json all{{"kind", "CAD"},           {"format", info.format},
-                 {"unit", info.unit},       {"to_millimetres", info.to_millimetres},
-                 {"lengths", info.lengths}, {"box", {place(info.box.lo), place(info.box.hi)}},
-                 {"solids", solids},        {"faces", info.faces},
-                 {"groups", groups},        {"named_faces", info.named_faces},
+  const Json all{{"kind", "CAD"},
+                 {"format", info.format},
+                 {"unit", info.unit},
+                 {"to_millimetres", info.to_millimetres},
+                 {"lengths", info.lengths},
+                 {"box", {place(info.box.lo), place(info.box.hi)}},
+                 {"solids", solids},
+                 {"faces", info.faces},
+                 {"edges", info.edges},
+                 {"groups", groups},
+                 {"named_faces", info.named_faces},
                  {"notes", info.notes}};
   return all.dump(-1, ' ', false, Json::error_handler_t::replace);
 }

@@ -6,6 +6,7 @@
 
 #include "base/core/elementary.h"
 #include "base/core/wording.h"
+#include "base/mesh/curve_names.h"
 #include "cad/reader/cad_reader.h"
 #include "cad/shapes/collapse.h"
 #include "cad/shapes/groups.h"
@@ -18,6 +19,7 @@
 #include <array>
 #include <cmath>
 #include <iterator>
+#include <set>
 #include <utility>
 
 #include <fmt/format.h>
@@ -495,6 +497,13 @@ CadInfo read_cad_info(const std::string& file, const IntakeOptions& options, con
   for (const cad::LabelGroup& group : cad::label_groups(model))
     info.groups.push_back({group.name, group.faces.size(), group.solids.size()});
   info.faces = cad::face_names(model);
+  std::set<std::string> edges;
+  for (const cad::CadEdge& edge : model.edges) {
+    std::vector<std::uint32_t> faces = edge.faces;
+    std::ranges::sort(faces);
+    if (faces.size() > 1) edges.insert(curve_name(faces, info.faces));
+  }
+  info.edges.assign(edges.begin(), edges.end());
   for (const cad::Face& face : model.faces) info.named_faces += !face.labels.name.empty();
   return info;
 }

@@ -1,5 +1,6 @@
 #include "improve/schedule/schedule.h"
 
+#include <octafront/option_table.h>
 #include <octafront/quality.h>
 
 #include "base/comm/packing.h"
@@ -524,7 +525,9 @@ bool uses_places(ImproveOptions::Level level) {
 
 bool improve_mesh(TetMesh& mesh, const BoundaryInput* input, const ImproveOptions& options, const Stage& stage,
                   Features* features, Tets tets, const MeshOfPieces::BeforeStage& before_stage) {
-  check_improve_options(options);
+  Options ranges;
+  ranges.improve = options;
+  check_ranges(ranges);
   const bool is_empty = tets == Tets::kAll && mesh.tets.empty();
   if (options.level == ImproveOptions::Level::kOff || is_empty) return false;
   const KeptLabels labels(mesh);

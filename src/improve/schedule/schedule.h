@@ -17,9 +17,6 @@
 
 namespace octafront {
 
-/// Throws OptionError for values out of their range.
-void check_improve_options(const ImproveOptions& options);
-
 /// Makes the elements of a valid mesh better, by the schedule of options.level. Without `input` the boundary does
 /// not change, and is the user's own. With it, and unless options.move_boundary is off, vertices of the boundary slide
 /// along the surface or curve that they lie on, corners stay, and edges inside patches may turn; the boundary stays as

@@ -2,9 +2,8 @@
 
 #include <octafront/error.h>
 
-#include "base/core/wording.h"
 #include "base/geometry/measures.h"
-#include "base/mesh/complex.h"
+#include "base/places/places.h"
 
 #include <algorithm>
 #include <utility>
@@ -13,49 +12,30 @@
 
 namespace octafront::layers {
 
-namespace {
-
-using Names = std::vector<std::string>;
-
-std::string in_words(const Names& known, const char* what) {
-  std::string words;
-  for (const std::string& name : known)
-    if (!name.empty()) words += fmt::format("{}\"{}\"", words.empty() ? "" : ", ", name);
-  return words.empty() ? fmt::format("no {} of this surface has a name", what) : "there are " + words;
-}
-
-/// Per known name whether the list has it. `option` and `what`: for what is said of others.
-std::vector<std::uint8_t> chosen(const Names& known, const std::string& list, const char* option, const char* what) {
-  std::vector<std::uint8_t> is_chosen(known.size(), 0);
-  for (const std::string& name : names_listed(list, known)) {
-    const auto found = std::ranges::find(known, name);
-    if (found == known.end())
-      throw OptionError(fmt::format("`{}`: there is no {} \"{}\": {}", option, what, name, in_words(known, what)));
-    is_chosen[static_cast<std::size_t>(found - known.begin())] = 1;
-  }
-  return is_chosen;
-}
-
-}  // namespace
-
 std::vector<std::uint8_t> walls_named(const SurfaceMesh& surface, const std::string& names) {
   if (names.empty()) return std::vector<std::uint8_t>(surface.triangles.size(), 1);
-  const std::vector<std::uint8_t> is_chosen = chosen(surface.patch_names, names, "on", "patch");
-  std::vector<std::uint8_t> is_wall;
-  for (std::size_t f = 0; f < surface.triangles.size(); ++f) {
-    const std::uint32_t patch = surface.patch_of(f);
-    is_wall.push_back(patch < is_chosen.size() && is_chosen[patch]);
+  const SurfacePlaces places(surface);
+  std::vector<std::uint8_t> is_wall(surface.triangles.size(), 0);
+  for (const Place& place : places_listed("on", names, ',', surface.patch_names)) {
+    const SurfaceItems items = places.at("on", place);
+    for (const std::uint32_t f : items.triangles) is_wall[f] = 1;
+    if (!items.region || !items.triangles.empty()) continue;  // a patch goes before a region of its name
+    for (std::size_t f = 0; f < is_wall.size(); ++f)
+      if (std::ranges::count(surface.sides_of(f), *items.region) == 1) is_wall[f] = 1;
   }
   return is_wall;
 }
 
 std::vector<std::uint32_t> regions_named(const SurfaceMesh& surface, const std::string& names) {
-  Names known;
-  for (std::uint32_t r = 0; r < region_count(surface); ++r) known.push_back(region_name(surface, r));
-  const std::vector<std::uint8_t> is_chosen =
-      names.empty() ? std::vector<std::uint8_t>(known.size(), 1) : chosen(known, names, "in", "region");
+  const SurfacePlaces places(surface);
+  std::vector<std::uint8_t> is_chosen(places.regions().size(), names.empty());
+  for (const Place& place : places_listed("in", names, ',', places.regions())) {
+    const SurfaceItems items = places.at("in", place);
+    if (!items.region) throw OptionError(fmt::format("`in` is a list of regions, and \"{}\" is none", place.text));
+    is_chosen[*items.region] = 1;
+  }
   std::vector<std::uint32_t> regions;
-  for (std::uint32_t r = 0; r < known.size(); ++r)
+  for (std::uint32_t r = 0; r < is_chosen.size(); ++r)
     if (is_chosen[r]) regions.push_back(r);
   return regions;
 }

@@ -10,6 +10,7 @@
 #include "sizing/prediction/affordable.h"
 #include "sizing/search/make_size_field.h"
 #include "sizing/sources/check_size_options.h"
+#include "sizing/sources/named_sizes.h"
 
 #include <algorithm>
 #include <utility>
@@ -61,6 +62,7 @@ SizeField sizes_for(const SurfaceMesh& surface, Run& run) {
     note_misplaced_sizes(boundary, run.options.size, stage);
     const KnownSurface known(std::move(boundary), run.options.surface.angle_of_features());
     SizeOptions sizes = run.options.size;
+    take_places_in_space(sizes);
     // What is to stay near to a curved surface needs elements as small as its curvature says, as in generate().
     if (const auto bound = run.options.surface.max_deviation; bound && *bound > 0 && !sizes.chord_error && !sizes.field)
       sizes.chord_error = *bound;

@@ -6,7 +6,7 @@
 #include "base/core/flat_map.h"
 #include "base/geometry/measures.h"
 #include "base/mesh/face_table.h"
-#include "pipeline/stages/named_items.h"
+#include "base/places/places.h"
 
 #include <algorithm>
 #include <array>
@@ -38,22 +38,19 @@ void add_faces_of(const TetMesh& mesh, const std::vector<std::uint32_t>& tets, s
     if (theirs.contains(face_key(face_of_number(mesh, f)))) faces.push_back(f);
 }
 
-void add_named(const TetMesh& mesh, const std::string& name, NamedItems& kept) {
-  const auto items = items_called(mesh, name);
-  if (!items) refuse_name(mesh, "keep", name);
-  NamedItems own = *items;
+void add_place(const TetMesh& mesh, const Place& place, MeshItems& kept) {
+  MeshItems own = items_at(mesh, "keep", place);
   add_faces_of(mesh, own.tets, own.faces);
   if (own.nodes.empty() && own.edges.empty() && own.faces.empty())
-    throw OptionError(fmt::format("`keep`: \"{}\" has no faces, edges or vertices that could stay", name));
+    throw OptionError(fmt::format("`keep`: \"{}\" has no faces, edges or vertices that could stay", place.text));
   kept.nodes.insert(kept.nodes.end(), own.nodes.begin(), own.nodes.end());
   kept.edges.insert(kept.edges.end(), own.edges.begin(), own.edges.end());
   kept.faces.insert(kept.faces.end(), own.faces.begin(), own.faces.end());
 }
 
-NamedItems items_asked_for(const TetMesh& mesh, const Options& options) {
-  NamedItems kept;
-  for (const std::string& name : split_at(options.adapt.keep, ';'))
-    if (!name.empty()) add_named(mesh, name, kept);
+MeshItems items_asked_for(const TetMesh& mesh, const Options& options) {
+  MeshItems kept;
+  for (const Place& place : places_listed("keep", options.adapt.keep, ';', {})) add_place(mesh, place, kept);
   if (!options.improve.move_boundary) {
     kept.faces.resize(kept.faces.size() + mesh.boundary.size());
     std::iota(kept.faces.end() - static_cast<std::ptrdiff_t>(mesh.boundary.size()), kept.faces.end(), 0u);
@@ -66,7 +63,7 @@ NamedItems items_asked_for(const TetMesh& mesh, const Options& options) {
 KeptItems add_kept_items(TetMesh& mesh, const Options& options, const Stage& stage) {
   KeptItems kept;
   kept.own_sets = mesh.sets.size();
-  NamedItems asked = items_asked_for(mesh, options);
+  MeshItems asked = items_asked_for(mesh, options);
   for (auto& [kind, members] :
        {std::pair{NamedSet::Kind::kNodes, &asked.nodes}, std::pair{NamedSet::Kind::kEdges, &asked.edges},
         std::pair{NamedSet::Kind::kFaces, &asked.faces}}) {

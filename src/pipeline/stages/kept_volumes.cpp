@@ -3,6 +3,7 @@
 #include <octafront/quality.h>
 
 #include "base/core/parallel.h"
+#include "base/core/wording.h"
 #include "base/geometry/predicates.h"
 #include "base/mesh/complex.h"
 #include "improve/curved/curved.h"
@@ -224,7 +225,7 @@ std::vector<VolumeChange> volume_changes(const Report& report) {
     const RegionSummary& region = report.regions[r];
     const double before = region.true_volume > 0 ? region.true_volume : region.input_volume;
     if (!(before > 0)) continue;
-    const std::string name = region.name.empty() ? fmt::format("region {}", r + 1) : region.name;
+    const std::string name = region_label(region.name, r, report.regions.size());
     changes.push_back({name, r, before, region.volume + region.layers_volume, region.true_volume > 0});
   }
   return changes;

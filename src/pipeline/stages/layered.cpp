@@ -6,6 +6,7 @@
 #include "base/geometry/measures.h"
 #include "base/mesh/complex.h"
 #include "base/mesh/features.h"
+#include "base/places/places.h"
 #include "layers/columns/assemble.h"
 #include "layers/growth/grow.h"
 #include "layers/growth/soundness.h"
@@ -28,7 +29,6 @@ namespace octafront {
 
 namespace {
 
-constexpr int kMostLayers = 100;
 constexpr double kDefaultGrowth = 1.2, kLeastGrowth = 1, kMostGrowth = 3;
 constexpr int kGrowthSteps = 60;
 
@@ -38,10 +38,6 @@ constexpr std::array<const char*, layers::kReasons> kReasonNames{
 
 void require_layers(bool holds, const char* sentence) {
   if (!holds) throw OptionError(sentence);
-}
-
-bool is_positive(const std::optional<double>& value) {
-  return !value || (std::isfinite(*value) && *value > 0);
 }
 
 /// The growth by which layers come from a first height to a total one.
@@ -146,7 +142,7 @@ std::vector<LayerSummary> summarize_layers(const SurfaceMesh& whole,
       add_face(wall.surface, columns, wall.surface.triangles[f], count);
     }
     for (auto& [patch, count] : of_patch) {
-      if (patch < whole.patch_names.size()) count.summary.patch = whole.patch_names[patch];
+      count.summary.patch = patch_label(whole.patch_names, patch);
       if (regions.size() > 1) count.summary.region = region_name(whole, wall.region);
       all.push_back(finished(std::move(count)));
     }
@@ -212,12 +208,8 @@ void check_layer_options(const Options& options) {
                    "boundary layers are described, but none are asked for: give `count`");
     return;
   }
-  require_layers(o.count > 0 && o.count <= kMostLayers, "the `count` of boundary layers is between 0 and 100");
-  require_layers(is_positive(o.first) && is_positive(o.first_part) && is_positive(o.total),
-                 "`first`, `first_part` and `total` of boundary layers are heights above 0");
-  require_layers(!has_flow || (o.yplus && o.reynolds && o.reference_length && is_positive(o.yplus) &&
-                               is_positive(o.reynolds) && is_positive(o.reference_length)),
-                 "`yplus`, `reynolds` and `reference_length` go together, and are above 0");
+  require_layers(!has_flow || (o.yplus && o.reynolds && o.reference_length),
+                 "`yplus`, `reynolds` and `reference_length` go together");
   require_layers(o.first.has_value() + o.first_part.has_value() + o.yplus.has_value() <= 1,
                  "the height of the first boundary layer is given more than once: `first`, `first_part` or `yplus`");
   require_layers(o.first || o.first_part || o.yplus || o.total,
@@ -226,16 +218,12 @@ void check_layer_options(const Options& options) {
                  "`total` of boundary layers goes with `first` or `yplus`, not with `first_part`");
   require_layers(!(o.growth && o.total && absolute_first(o)),
                  "`growth`, the first height and `total` of boundary layers are one too many: give two of them");
-  require_layers(!o.growth || (*o.growth >= kLeastGrowth && *o.growth <= kMostGrowth),
-                 "`growth` of layers is in [1, 3]");
   if (const auto first = absolute_first(o); first && o.total) {
     const double ratio = *o.total / *first;
     require_layers(ratio >= o.count && ratio <= layers::total_height(kMostGrowth, static_cast<std::uint32_t>(o.count)),
                    "no `growth` in [1, 3] leads from the first height to `total` with so many layers");
   }
   require_layers(!o.outside || o.in.empty(), "`outside` layers lie in no region: leave out `in`");
-  require_layers(!o.require_coverage || (*o.require_coverage >= 0 && *o.require_coverage <= 100),
-                 "`require_coverage` is in percent");
   require_layers(
       !traits_of(options.method).makes_own_boundary(),
       "the octree method makes a boundary of its own: boundary layers need method octree-aft, aft or recover");

@@ -2,6 +2,7 @@
 
 #include "base/core/elementary.h"
 #include "base/geometry/measures.h"
+#include "base/mesh/complex.h"
 
 #include <algorithm>
 #include <cmath>
@@ -71,10 +72,7 @@ class Around {
   std::uint32_t region_towards(std::uint32_t t, Vec3 way) const {
     return input_.sides_of(t)[dot(normal(t), way) > 0 ? 0 : 1];
   }
-  std::string name_of_region(std::uint32_t r) const {
-    const bool has_name = r < input_.region_names.size() && !input_.region_names[r].empty();
-    return has_name ? fmt::format("\"{}\"", input_.region_names[r]) : fmt::format("region {}", r + 1);
-  }
+  std::string name_of_region(std::uint32_t r) const { return fmt::format("\"{}\"", region_name(input_, r)); }
   bool is_contact(std::uint32_t t) const {
     const Sides sides = input_.sides_of(t);
     return sides[0] != kNone && sides[1] != kNone && sides[0] != sides[1];

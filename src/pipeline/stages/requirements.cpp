@@ -19,14 +19,9 @@ namespace octafront {
 
 namespace {
 
-constexpr double kMostRequired = 70;  // degrees; a regular tetrahedron has 70.53
 /// Elements below one of these are told of.
 constexpr double kPoorBeta = 0.2, kPoorAngle = 10;
 constexpr std::size_t kRange = 4096;
-
-void must_be(bool holds, const char* sentence) {
-  if (!holds) throw OptionError(sentence);
-}
 
 std::uint64_t elements_below(const TetMesh& mesh, double degrees) {
   const auto found = parallel_collect<TetIndex>(
@@ -82,15 +77,6 @@ Finding size_finding(const LongestEdge& longest, double times) {
 }
 
 }  // namespace
-
-void check_requirements(const RequireOptions& o) {
-  must_be(!o.volume || (std::isfinite(*o.volume) && *o.volume >= 0),
-          "`require_volume` is in percent of the volume, not below 0");
-  must_be(!o.angle || (*o.angle > 0 && *o.angle <= kMostRequired),
-          "`require_angle` is in degrees, above 0 and at most 70: no element has all its angles above 70.53");
-  must_be(!o.size || (std::isfinite(*o.size) && *o.size >= 1),
-          "`require_size` is 1 or more: no edge is to be longer than so many times the size wanted there");
-}
 
 bool requires_something(const RequireOptions& o) {
   return o.volume || o.angle || o.size;

@@ -18,9 +18,6 @@
 
 namespace octafront {
 
-/// Throws OptionError for values out of range.
-void check_requirements(const RequireOptions& options);
-
 bool requires_something(const RequireOptions& options);
 /// Throws OptionError, with the reason, where a size is required that nobody asks for.
 void refuse_sizes_required(const RequireOptions& options, const char* why);

@@ -30,6 +30,7 @@
 #include "sizing/sources/check_size_options.h"
 #include "sizing/sources/curvature.h"
 #include "sizing/sources/kept_surface.h"
+#include "sizing/sources/named_sizes.h"
 #include "soup/defects/examine.h"
 #include "surface/folds/unfold.h"
 
@@ -378,6 +379,7 @@ Prepared prepare(const Domain& domain, Run& run) {
 SizeField choose_sizes(const Prepared& input, Run& run) {
   SizeField sizes = run.stage("size field", [&](const Stage& stage) {
     SizeOptions size = run.options.size;
+    take_places_in_space(size);
     const double budget = budget_of(input.surface.mesh(), run.options);
     if (std::isfinite(budget)) stage.count("budget of elements", budget);
     if (const auto asked = asked_deviation(run.options); !size.field && asked != 0.0) size.chord_error = asked;

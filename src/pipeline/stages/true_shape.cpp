@@ -3,6 +3,7 @@
 #include "base/core/parallel.h"
 #include "base/geometry/measures.h"
 #include "base/mesh/complex.h"
+#include "base/places/places.h"
 #include "improve/curved/curved.h"
 #include "improve/schedule/schedule.h"
 #include "pipeline/stages/methods.h"
@@ -83,6 +84,13 @@ std::vector<std::string> names_behind(const TrueGeometry& geometry, const std::s
   return names;
 }
 
+/// What names_behind() knows.
+std::vector<std::string> names_of_places(const TrueGeometry& geometry) {
+  std::vector<std::string> names = geometry.part_names();
+  for (const PartGroup& group : geometry.groups()) names.push_back(group.name);
+  return names;
+}
+
 /// The faces of the mesh by boundary, then interfaces, whose part is one of the group's.
 NamedSet faces_of(const PartGroup& group, const TetMesh& mesh) {
   NamedSet set{group.name, NamedSet::Kind::kFaces, {}};
@@ -128,13 +136,29 @@ std::string parts_without_faces(const std::vector<std::string>& names, const Tet
 
 Options options_for_geometry(const Domain& domain, Options options) {
   if (!options.surface.feature_angle) options.surface.feature_angle = kAngleWithinFace;
-  std::vector<NamedSize> named;
-  for (const NamedSize& asked : options.size.named) {
-    const std::vector<std::string> behind = names_behind(*domain.geometry, asked.name);
-    if (behind.empty() || holds(domain.surface.region_names, asked.name)) named.push_back(asked);
-    for (const std::string& name : behind) named.push_back({name, asked.size});
-  }
-  options.size.named = std::move(named);
+  const auto meant = [&](const std::string& name) {
+    std::vector<std::string> names;
+    if (!name.empty()) names = names_behind(*domain.geometry, name);
+    if (names.empty() || holds(domain.surface.region_names, name)) names.insert(names.begin(), name);
+    return names;
+  };
+  const auto each = [&](auto& list) {
+    std::remove_reference_t<decltype(list)> all;
+    for (const auto& asked : list)
+      for (std::string& name : meant(asked.name)) all.emplace_back(asked).name = std::move(name);
+    list = std::move(all);
+  };
+  const auto those = [&](std::string& list) {
+    std::vector<std::string> known = names_of_places(*domain.geometry);
+    for (const auto* names : {&domain.surface.patch_names, &domain.surface.region_names})
+      known.insert(known.end(), names->begin(), names->end());
+    std::string all;
+    for (const Place& place : places_listed("on", list, ',', known))
+      for (const std::string& name : meant(place.text)) all += (all.empty() ? "" : ",") + name;
+    list = all;
+  };
+  each(options.size.named), each(options.size.near);
+  those(options.layers.on), those(options.layers.in);
   return options;
 }
 

@@ -10,7 +10,7 @@
 namespace octafront {
 
 /// The options for a domain of CAD: lines are borders of patches, so that features by angle are those that a face has
-/// within itself; sizes of parts and of groups become those of their patches and regions.
+/// within itself; for sizes and layers parts and groups become their patches and regions.
 Options options_for_geometry(const Domain& domain, Options options);
 
 /// Moves the vertices of boundary and interfaces to the true geometry, and numbers patches as it does;

@@ -1,6 +1,7 @@
 #include "sizing/sources/check_size_options.h"
 
 #include <octafront/error.h>
+#include <octafront/option_table.h>
 
 #include "base/core/wording.h"
 #include "base/mesh/index_range.h"
@@ -25,11 +26,6 @@ void require_order(const char* low_name, const std::optional<double>& low, const
                    const std::optional<double>& high) {
   require(!low || !high || *low <= *high,
           fmt::format("`{}` {} is larger than `{}` {}", low_name, low.value_or(0), name, high.value_or(0)));
-}
-
-void require_positive(const char* name, const std::optional<double>& value) {
-  require(!value || (std::isfinite(*value) && *value > 0),
-          fmt::format("`{}` must be a number above 0, but is {}", name, value.value_or(0)));
 }
 
 // Sizes given for places where the model is not are mostly in another unit, or for another model.
@@ -130,26 +126,15 @@ void check_mesh(const SizeMesh& mesh) {
 }  // namespace
 
 void check_size_options(const SizeOptions& o) {
-  require_positive("size", o.size);
-  require_positive("gap", o.gap);
-  require_positive("through", o.through);
-  require_positive("max_deviation", o.chord_error);
-  require_positive("feature_elements", o.feature_elements);
-  require_positive("min_size", o.min_size);
-  require_positive("max_size", o.max_size);
-  require(!o.elements || *o.elements >= 1,
-          fmt::format("`elements` must be at least 1, but is {}", o.elements.value_or(0)));
+  Options ranges;
+  ranges.size = o;
+  check_ranges(ranges);
   require(!o.elements || *o.elements <= kMostElements,
           fmt::format("`elements` is {}, but a mesh can hold {} at most", o.elements.value_or(0), kMostElements));
   require(!(o.size && o.elements), "`size` and `elements` contradict each other: give one of them");
-  require(!o.curvature || (std::isfinite(*o.curvature) && *o.curvature >= 3),
-          fmt::format("`curvature` counts elements per full turn and must be at least 3, but is {}",
-                      o.curvature.value_or(0)));
   require_order("min_size", o.min_size, "max_size", o.max_size);
   require_order("min_size", o.min_size, "size", o.size);
   require_order("size", o.size, "max_size", o.max_size);
-  require(o.automatic_factor >= 0.1 && o.automatic_factor <= 10,
-          fmt::format("`automatic_factor` must lie in [0.1, 10], but is {}", o.automatic_factor));
   const bool has_source = o.size || o.elements || o.curvature || o.gap || o.feature_elements || o.facets ||
                           o.min_size || o.max_size || !o.regions.empty() || !o.point_sizes.empty() ||
                           !o.named.empty() || o.callback || o.through || !o.near.empty() || o.mesh;
@@ -175,9 +160,6 @@ void check_size_options(const SizeOptions& o) {
                     "below",
                     r.lo.x, r.lo.y, r.lo.z, r.size, r.radius));
   }
-  const double gradation = o.gradation.value_or(kDefaultGradation);
-  require(gradation >= 0.01 && gradation <= 1,
-          fmt::format("`gradation` is {}: it must lie between 0.01 (slow growth) and 1 (fast)", gradation));
 }
 
 void note_misplaced_sizes(const SurfaceMesh& surface, const SizeOptions& options, const Stage& stage) {

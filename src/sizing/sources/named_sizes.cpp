@@ -3,11 +3,10 @@
 #include <octafront/error.h>
 #include <octafront/surface_mesh.h>
 
-#include "base/core/utf8.h"
 #include "base/geometry/triangle_tree.h"
 #include "base/mesh/complex.h"
+#include "base/places/places.h"
 #include "sizing/prediction/affordable.h"
-#include "sizing/sources/named_places.h"
 
 #include <algorithm>
 #include <cmath>
@@ -28,30 +27,27 @@ constexpr double kAlong = 0.5;
 class Named {
  public:
   Named(const KnownSurface& known, const SizeOptions& options)
-      : surface_(known.mesh()), options_(options), places_(known) {
+      : surface_(known.mesh()), options_(options), places_(known.mesh(), &known.edges()) {
     result_.face.assign(surface_.triangles.size(), std::numeric_limits<double>::infinity());
   }
 
   NamedSizes run() {
-    for (NamedSize named : options_.named) {
-      // As those of the surface are.
-      NameCleaning().clean(named.name);
+    for (const NamedSize& named : options_.named) {
       const double h = std::max(named.size, options_.min_size.value_or(0));
-      const bool is_region = ask_region(named.name, h), is_patch = ask_patch(named.name, h);
-      if (!ask_curve(named.name, h) && !is_region && !is_patch) places_.refuse(named.name);
+      const SurfaceItems items = places_.at("size_of", place_of("size_of", named.name));
+      if (items.region) ask_region(*items.region, named.name, h);
+      for (const std::uint32_t t : items.triangles) result_.face[t] = std::min(result_.face[t], h);
+      for (const Edge& edge : items.edges) ask_edge(edge, h);
     }
     return std::move(result_);
   }
 
  private:
-  bool ask_region(const std::string& name, double h) {
-    const std::optional<std::uint32_t> region = places_.region(name);
-    if (!region) return false;
+  void ask_region(std::uint32_t region, const std::string& name, double h) {
     for (std::size_t t = 0; t < surface_.triangles.size(); ++t)
       for (const std::uint32_t side : surface_.sides_of(t))
-        if (side == *region) result_.face[t] = std::min(result_.face[t], h);
-    add_inside(boundary_of_region(surface_, *region), name, h);
-    return true;
+        if (side == region) result_.face[t] = std::min(result_.face[t], h);
+    add_inside(boundary_of_region(surface_, region), name, h);
   }
 
   /// Points all over the inside of a region, so that its size holds in the middle too.
@@ -67,29 +63,29 @@ class Named {
           if (tree.contains({x, y, z})) result_.points.push_back({{x, y, z}, {}, h});
   }
 
-  bool ask_patch(const std::string& name, double h) {
-    const std::vector<std::uint32_t> triangles = places_.patch(name);
-    for (const std::uint32_t t : triangles) result_.face[t] = std::min(result_.face[t], h);
-    return !triangles.empty();
-  }
-
-  bool ask_curve(const std::string& name, double h) {
-    const std::vector<Edge> edges = places_.curve(name);
-    for (const Edge& edge : edges) {
-      const Vec3 a = surface_.points[edge[0]], b = surface_.points[edge[1]];
-      const int parts = std::max(1, static_cast<int>(std::min(1e6, std::ceil(distance(a, b) / (kAlong * h)))));
-      for (int i = 0; i <= parts; ++i) result_.points.push_back({a + (b - a) * (i / double(parts)), {}, h});
-    }
-    return !edges.empty();
+  void ask_edge(const Edge& edge, double h) {
+    const Vec3 a = surface_.points[edge[0]], b = surface_.points[edge[1]];
+    const int parts = std::max(1, static_cast<int>(std::min(1e6, std::ceil(distance(a, b) / (kAlong * h)))));
+    for (int i = 0; i <= parts; ++i) result_.points.push_back({a + (b - a) * (i / double(parts)), {}, h});
   }
 
   const SurfaceMesh& surface_;
   const SizeOptions& options_;
-  NamedPlaces places_;
+  SurfacePlaces places_;
   NamedSizes result_;
 };
 
 }  // namespace
+
+void take_places_in_space(SizeOptions& options) {
+  std::erase_if(options.named, [&](const NamedSize& named) {
+    const Place place = place_of("size_of", named.name);
+    if (const auto* box = std::get_if<Box3>(&place.where)) options.regions.push_back({box->lo, box->hi, 0, named.size});
+    if (const auto* ball = std::get_if<GroupRule::Sphere>(&place.where))
+      options.regions.push_back({ball->center, ball->center, ball->radius, named.size});
+    return place.is_in_space();
+  });
+}
 
 NamedSizes named_sizes(const KnownSurface& surface, const SizeOptions& options) {
   return options.named.empty() ? NamedSizes{} : Named(surface, options).run();

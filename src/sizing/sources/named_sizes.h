@@ -15,6 +15,9 @@ struct NamedSizes {
   std::vector<SizeSample> points;  ///< along curves and inside regions
 };
 
+/// Sizes that are asked for in a box or ball by `named` become some of `regions`. Throws OptionError.
+void take_places_in_space(SizeOptions& options);
+
 /// Finds the regions, patches and curves that are named. Throws OptionError for names that there are not, and for sizes
 /// that would make more elements than a mesh can hold.
 NamedSizes named_sizes(const KnownSurface& surface, const SizeOptions& options);

@@ -4,14 +4,13 @@
 #include <octafront/surface_mesh.h>
 
 #include "base/core/parallel.h"
-#include "base/core/utf8.h"
 #include "base/geometry/measures.h"
 #include "base/geometry/triangle_tree.h"
 #include "base/mesh/complex.h"
+#include "base/places/places.h"
 #include "sizing/field/octree.h"
 #include "sizing/prediction/affordable.h"
 #include "sizing/sources/mesh_sizes.h"
-#include "sizing/sources/named_places.h"
 
 #include <algorithm>
 #include <cmath>
@@ -35,28 +34,27 @@ constexpr int kLevelOfParts = 3;
 /// a coarse mesh cut as much off.
 constexpr double kOutside = 0.01;
 
-/// A region, a patch, a curve or a point.
-class Place {
+/// A region, a patch, a curve, a point, a box or a ball.
+class Nearby {
  public:
-  Place(NamedPlaces& places, const SurfaceMesh& surface, const NearSize& near) {
-    std::string name = near.name;
-    if (name.empty()) {
-      add(surface, {}, {});
+  Nearby(const SurfacePlaces& places, const SurfaceMesh& surface, const NearSize& near) {
+    if (near.name.empty()) {
       points_.push_back(near.point);
       triangles_.push_back({0, 0, 0});
+    } else if (const Place place = place_of("size_near", near.name); place.is_in_space()) {
+      if (const auto* box = std::get_if<Box3>(&place.where)) box_ = *box;
+      if (const auto* ball = std::get_if<GroupRule::Sphere>(&place.where))
+        box_ = Box3{ball->center, ball->center}, radius_ = ball->radius;
     } else {
-      // As those of the surface are.
-      NameCleaning().clean(name);
-      if (const auto region = places.region(name)) inside_.emplace(boundary_of_region(surface, *region));
-      const std::vector<std::uint32_t> patch = places.patch(name);
-      const std::vector<Edge> curve = places.curve(name);
-      if (!inside_ && patch.empty() && curve.empty()) places.refuse(near.name);
-      add(surface, patch, curve);
+      const SurfaceItems items = places.at("size_near", place);
+      if (items.region) inside_.emplace(boundary_of_region(surface, *items.region));
+      add(surface, items.triangles, items.edges);
     }
     tree_.emplace(points_, triangles_);
   }
 
   double distance(Vec3 p) const {
+    if (box_) return std::max(0.0, length(max(max(p - box_->hi, box_->lo - p), Vec3{})) - radius_);
     double nearest = tree_->empty() ? kNothing : std::sqrt(tree_->nearest(p).squared_distance);
     if (!inside_ || nearest == 0) return nearest;
     if (inside_->contains(p)) return 0;
@@ -80,6 +78,8 @@ class Place {
   std::vector<Triangle> triangles_;
   std::optional<TriangleTree> tree_;
   std::optional<TriangleTree> inside_;  ///< of a region
+  std::optional<Box3> box_;             ///< a box; a ball is a point with a radius
+  double radius_ = 0;
 };
 
 /// The law of NearSize.
@@ -93,8 +93,8 @@ std::string name_of(const NearSize& near) {
              : fmt::format("`size_near` \"{}\"", near.name);
 }
 
-SizeInSpace near_place(NamedPlaces& places, const SurfaceMesh& surface, const NearSize& near) {
-  const auto place = std::make_shared<const Place>(places, surface, near);
+SizeInSpace near_place(const SurfacePlaces& places, const SurfaceMesh& surface, const NearSize& near) {
+  const auto place = std::make_shared<const Nearby>(places, surface, near);
   return {name_of(near), [place, near](Vec3 p) { return size_at_distance(near, place->distance(p)); },
           [place, near](const Box3& box) {
             return size_at_distance(near, std::max(0.0, place->distance(box.center()) - box.diagonal() / 2));
@@ -198,7 +198,7 @@ std::vector<SizeInSpace> sizes_in_space(const KnownSurface& surface, const SizeO
   std::vector<SizeInSpace> sources;
   if (options.mesh) sources.push_back(on_mesh(options.mesh));
   if (options.near.empty()) return sources;
-  NamedPlaces places(surface);
+  const SurfacePlaces places(surface.mesh(), &surface.edges());
   for (const NearSize& near : options.near) sources.push_back(near_place(places, surface.mesh(), near));
   return sources;
 }

@@ -4,6 +4,7 @@
 
 #include "base/core/wording.h"
 #include "base/geometry/measures.h"
+#include "base/places/places.h"
 
 #include <algorithm>
 #include <array>
@@ -37,18 +38,8 @@ class MapFinder {
 
  private:
   void take(const std::string& name, CellFace face) {
-    bool found = false;
-    for (std::uint32_t t = 0; t < face_.size(); ++t) {
-      const std::uint32_t p = surface_.patch[t];
-      if (p >= surface_.patch_names.size() || surface_.patch_names[p] != name) continue;
-      found = true;
-      put(t, face);
-    }
-    if (found) return;
-    std::string known;
-    for (const std::string& n : surface_.patch_names) known += (known.empty() ? "" : ", ") + n;
-    throw OptionError(fmt::format("`periodic` names a patch \"{}\", and the surface has {}{}", name,
-                                  known.empty() ? "no names" : "only ", known));
+    const SurfacePlaces places(surface_);
+    for (const std::uint32_t t : places.at("periodic", place_of("periodic", name)).triangles) put(t, face);
   }
 
   void put(std::uint32_t t, CellFace face) {

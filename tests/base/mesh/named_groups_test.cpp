@@ -1,3 +1,4 @@
+#include <octafront/error.h>
 #include <octafront/named_groups.h>
 #include <octafront/validity.h>
 
@@ -11,6 +12,7 @@
 namespace octafront {
 namespace {
 
+using ::testing::AllOf;
 using ::testing::HasSubstr;
 using Kind = NamedSet::Kind;
 
@@ -40,9 +42,22 @@ TEST(AddGroup, SaysWhatIsNotThere) {
   TetMesh mesh = testing::rich_mesh(2);
   mesh.sets.clear();
   EXPECT_THAT(add_group(mesh, {"g", Kind::kFaces, std::vector<std::string>{"lid", "99"}}),
-              HasSubstr("\"lid\", \"99\""));
+              AllOf(HasSubstr("\"lid\""), HasSubstr("\"99\"")));
   EXPECT_THAT(add_group(mesh, {"far", Kind::kNodes, Box3{{9, 9, 9}, {10, 10, 10}}}), HasSubstr("nothing lies there"));
   EXPECT_TRUE(mesh.sets.empty());
+}
+
+TEST(AddGroup, HoldsWhatHasAName) {
+  TetMesh mesh = testing::rich_mesh(2);
+  mesh.sets.clear();
+  EXPECT_EQ(add_group(mesh, group_rule("g=glue")), "");
+  EXPECT_EQ(mesh.sets[0].kind, Kind::kFaces);
+  EXPECT_EQ(mesh.sets[0].members.size(), 8U);
+  EXPECT_EQ(add_group(mesh, group_rule("e=elements:box:0,0,0,1,2,2")), "");
+  EXPECT_EQ(mesh.sets[1].members.size(), mesh.tets.size() / 2);
+  EXPECT_THAT(add_group(mesh, group_rule("g=lid")), HasSubstr("it is left out"));
+  for (const char* bad : {"g", "=glue", "g=", "g=elements:glue", "g=bxo:1,2", "g=box:1,2"})
+    EXPECT_THROW(group_rule(bad), OptionError) << bad;
 }
 
 TEST(PatchCurves, AreWherePatchesMeet) {

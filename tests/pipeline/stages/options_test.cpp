@@ -32,7 +32,7 @@ TEST(Options, RefusesValuesOutOfRange) {
   for (const double h : {0.0, -1.0, std::nan(""), std::numeric_limits<double>::infinity()}) {
     Options o;
     o.size.size = h;
-    expect_refused(o, "`size` must be a number above 0");
+    expect_refused(o, "but must be above 0");
   }
   Options o;
   o.size.curvature = 2;
@@ -45,7 +45,7 @@ TEST(Options, RefusesValuesOutOfRange) {
   expect_refused(o, "`feature_angle`");
   o = {};
   o.size.elements = 0;
-  expect_refused(o, "`elements` must be at least 1");
+  expect_refused(o, "`elements` is 0, but must be at least 1");
 }
 
 // Before any work: not when improvement begins, after the volume was filled.

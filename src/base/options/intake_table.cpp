@@ -1,16 +1,16 @@
 #include <octafront/domain.h>
 
-#include "pipeline/options/rows.h"
+#include "base/options/rows.h"
 
-namespace octafront {
+namespace octafront::options {
 
 namespace {
 
-using namespace options;
+/// Commands beside those that make meshes.
+constexpr std::string_view kWithSurfaces = "repair check";
 
-OptionInfo about_intake(std::string_view name, std::string_view group, std::string_view help,
-                        std::string_view field = {}) {
-  return {name, field.empty() ? name : field, group, "mesh surface size", OptionInfo::Kind::kNumber, {}, help};
+About about_intake(std::string_view name, std::string_view group, std::string_view help) {
+  return {name, group, "mesh surface size", help};
 }
 
 template <class Access>
@@ -33,21 +33,24 @@ std::vector<Row<IntakeOptions>> material_rows() {
           about_intake("cells", kGroup,
                        "auto: cells between inner walls are regions, plain surfaces stay what they are; regions: "
                        "every enclosed cell, also where walls lie double or cross; merge: one region without the "
-                       "walls"),
+                       "walls")
+              .also(kWithSurfaces),
           [](auto& o) -> auto& { return o.complex.cells; },
           {{"auto", Cells::kAuto}, {"regions", Cells::kRegions}, {"merge", Cells::kMerge}}),
       intake_choice<Nested>(
           about_intake(
               "nested", kGroup,
               "Closed shells inside others: cavities where they face inward and regions where outward, or all the "
-              "same"),
+              "same")
+              .also(kWithSurfaces),
           [](auto& o) -> auto& { return o.complex.nested; },
           {{"direction", Nested::kByDirection}, {"cavity", Nested::kCavity}, {"region", Nested::kRegion}}),
       intake_choice<Overlap>(
           about_intake("overlap", kGroup,
                        "What parts share where they overlap. auto: parts of one file are united, of several bodies the "
                        "later one has it, solids of a CAD file are refused; first, later: that one has it, each name "
-                       "of a patch a region; new: it is a region of its own, a&b; regions: as later"),
+                       "of a patch (solid, group) a region; new: it is a region of its own, a&b; regions: as later")
+              .also(kWithSurfaces),
           [](auto& o) -> auto& { return o.complex.overlap; },
           {{"auto", Overlap::kAuto},
            {"first", Overlap::kFirst},
@@ -57,9 +60,12 @@ std::vector<Row<IntakeOptions>> material_rows() {
       intake_row(
           about_intake(
               "tolerance", kGroup,
-              "Several bodies: walls nearer to each other than this are one; 0: exactly as they are; without a value "
-              "what facets explain, or a tenth of the size. Repair: nothing moves farther than this; without a value a "
-              "thousandth of the diagonal"),
+              "Several bodies: walls nearer to each other than this are one; 0: exactly as they are. Repair: nothing "
+              "moves farther than this")
+              .takes("T")
+              .from(0)
+              .without("what facets explain, or a tenth of the size; of repair a thousandth of the diagonal")
+              .also(kWithSurfaces),
           [](auto& o) -> auto& { return o.complex.tolerance; }),
   };
 }
@@ -70,13 +76,16 @@ std::vector<Row<IntakeOptions>> cell_rows() {
       intake_row(
           about_intake("repeat", kGroup,
                        "Axes along which bodies in a box, or an image, are repeated: what crosses a face of the cell "
-                       "comes in again at the opposite one; without a value those of `periodic`"),
+                       "comes in again at the opposite one")
+              .takes("AXES")
+              .without("those of `periodic`"),
           [](auto& o) -> auto& { return o.repeat; }),
       intake_row(
           about_intake("box", kGroup,
                        "The cell that bodies lie in, X0,Y0,Z0,X1,Y1,Z1: they are cut by it, and the rest of it is a "
-                       "region, matrix; or first: the first body is the cell. Of a formula the box that cuts it, "
-                       "without a value one cell of the surface from the origin on"),
+                       "region, matrix; or first: the first body is the cell. Of a formula the box that cuts it")
+              .takes("X0,Y0,Z0,X1,Y1,Z1")
+              .without("of a formula one cell of it, from the origin on"),
           [](auto& o) -> auto& { return o.box; }),
   };
 }
@@ -90,16 +99,23 @@ std::vector<Row<IntakeOptions>> repair_rows() {
           about_intake("repair", kGroup,
                        "Surfaces that cannot be meshed as they are. none: they are refused; auto: holes are "
                        "closed, crossings resolved, what bounds nothing dropped, the rest stays; wrap: a closed "
-                       "skin around everything"),
+                       "skin around everything")
+              .also("repair"),
           [](auto& o) -> auto& { return o.repair; },
           {{"none", Repair::kOff}, {"auto", Repair::kAuto}, {"wrap", Repair::kWrap}}),
       intake_choice<Sheets>(
-          about_intake("sheets", kGroup,
-                       "Walls inside of a region of a clean complex that bound nothing: cracks to keep, or debris"),
+          about_intake(
+              "sheets", kGroup,
+              "Walls inside of a region of a clean complex that bound nothing: cracks to keep, or debris. What "
+              "has to be mended loses them")
+              .also("repair"),
           [](auto& o) -> auto& { return o.sheets; }, {{"keep", Sheets::kKeep}, {"drop", Sheets::kDrop}}),
       intake_row(
-          about_intake("wrap_distance", kGroup,
-                       "How far the skin lies from the surface; without a value a hundredth of the diagonal"),
+          about_intake("wrap_distance", kGroup, "How far the skin lies from the surface")
+              .takes("D")
+              .above(0)
+              .without("a hundredth of the diagonal")
+              .also("repair"),
           [](auto& o) -> auto& { return o.wrap_distance; }),
   };
 }
@@ -110,29 +126,44 @@ std::vector<Row<IntakeOptions>> image_rows() {
   return {
       intake_row(
           about_intake("series", kGroup,
-                       "Which of several images of a folder, a file or a project, counted from 1; 0: the only one"),
+                       "Which of several images of a folder or a file, counted from 1; 0: the only one")
+              .takes("N")
+              .from(0)
+              .also("check info"),
           [](auto& o) -> auto& { return o.image.choice.series; }),
       intake_choice<Kind>(
           about_intake("kind", kGroup,
-                       "What the voxels hold; auto: labels if they are whole numbers that neighbours mostly share",
-                       "image"),
+                       "What the voxels hold; auto: labels if they are whole numbers that neighbours mostly share")
+              .called("image")
+              .written("image")
+              .also("check"),
           [](auto& o) -> auto& { return o.image.regions.kind; },
           {{"auto", Kind::kAuto}, {"labels", Kind::kLabels}, {"grey", Kind::kGrey}}),
       intake_row(
           about_intake("islands", kGroup,
-                       "Pieces of regions below this volume go to what surrounds them; each region keeps its largest"),
+                       "Pieces of regions below this volume go to what surrounds them; each region keeps its largest")
+              .takes("V")
+              .from(0)
+              .also("check"),
           [](auto& o) -> auto& { return o.image.regions.clean.islands; }),
       intake_row(
-          about_intake("holes", kGroup, "Pieces of the outside below this volume, not at the image's edge, are filled"),
+          about_intake("holes", kGroup, "Pieces of the outside below this volume, not at the image's edge, are filled")
+              .takes("V")
+              .from(0)
+              .also("check"),
           [](auto& o) -> auto& { return o.image.regions.clean.holes; }),
       intake_row(
           about_intake("close_voxels", kGroup,
-                       "Gaps of regions toward the outside close that are up to twice as many voxels "
-                       "wide; 64 at most"),
+                       "Gaps of regions toward the outside close that are up to twice as many voxels wide")
+              .takes("N")
+              .from(0)
+              .to(64)
+              .also("check"),
           [](auto& o) -> auto& { return o.image.regions.clean.closing; }),
       intake_row(
           about_intake("closed_at_box", kGroup,
-                       "What reaches the edge of the image ends flat there; false: it is refused"),
+                       "What reaches the edge of the image ends flat there, which is said; false: it is refused")
+              .also("check"),
           [](auto& o) -> auto& { return o.image.regions.closed_at_box; }),
   };
 }
@@ -146,33 +177,44 @@ std::vector<Row<IntakeOptions>> cad_rows() {
   constexpr const char* kGroup = "CAD";
   return {
       intake_row(
-          about_intake(
-              "cad_size", kGroup,
-              "The edge length that elements will have: triangles are made fine enough for it, and no line is "
-              "kept where narrow faces meet smoothly; without a value as size or elements ask, else a fortieth of the "
-              "diagonal, and all lines"),
+          about_intake("cad_size", kGroup,
+                       "The edge length that elements will have: triangles are made fine enough for it, and no line is "
+                       "kept where narrow faces meet smoothly")
+              .length("H")
+              .above(0)
+              .without("as size or elements ask, else a fortieth of the diagonal, and all lines")
+              .also("-"),
           [](auto& o) -> auto& { return o.cad.size; }),
       intake_row(
-          about_intake("cad_elements", kGroup,
-                       "The number of tetrahedra that the mesh will have, in place of cad_size; above 0"),
+          about_intake("cad_elements", kGroup, "The number of tetrahedra that the mesh will have, in place of cad_size")
+              .takes("N")
+              .from(1)
+              .also("-"),
           [](auto& o) -> auto& { return o.cad.elements; }),
       intake_choice<std::string>(
-          about_intake("cad_unit", kGroup, "What lengths count, those that are given and those of the mesh"),
+          about_intake("cad_unit", kGroup, "What lengths count, those that are given and those of the mesh").also("-"),
           [](auto& o) -> auto& { return o.cad.unit; }, units()),
       intake_row(
-          about_intake("keep_edges", kGroup, "All lines between faces are kept, tiny ones and smooth ones too"),
+          about_intake("keep_edges", kGroup, "All lines between faces are kept, tiny ones and smooth ones too")
+              .also("repair"),
           [](auto& o) -> auto& { return o.cad.keep_edges; }),
       intake_row(
-          about_intake("keep_going", kGroup, "A file of which a part cannot be read is meshed without it"),
+          about_intake("keep_going", kGroup, "A file of which a part cannot be read is meshed without it")
+              .also("repair"),
           [](auto& o) -> auto& { return o.cad.keep_going; }),
       intake_row(
-          about_intake("heal", kGroup, "What is not valid is healed, where that changes no volume"),
+          about_intake("heal", kGroup, "What is not valid is healed, where that changes no volume; else it stays")
+              .written("no-heal")
+              .also("repair"),
           [](auto& o) -> auto& { return o.cad.heal; }),
       intake_row(
-          about_intake("cad_seconds", kGroup, "CPU time for reading, healing, fusing and triangles; above 0"),
+          about_intake("cad_seconds", kGroup, "CPU time for reading, healing, fusing and triangles")
+              .takes("S")
+              .above(0)
+              .also("repair"),
           [](auto& o) -> auto& { return o.cad.seconds; }),
       intake_row(
-          about_intake("cad_memory", kGroup, "Memory for the same in gigabytes; above 0"),
+          about_intake("cad_memory", kGroup, "Memory for the same, in gigabytes").takes("GB").above(0).also("repair"),
           [](auto& o) -> auto& { return o.cad.memory_gigabytes; }),
   };
 }
@@ -181,39 +223,49 @@ std::vector<Row<IntakeOptions>> formula_rows() {
   constexpr const char* kGroup = "Formulas";
   return {
       intake_row(
-          about_intake("cell", kGroup, "Period of the named surfaces (gyroid, schwarz_p, ...); without a value 1"),
+          about_intake("cell", kGroup,
+                       "Period of the named surfaces (gyroid, schwarz_p, diamond, iwp, neovius, lidinoid)")
+              .takes("L")
+              .above(0)
+              .without("1"),
           [](auto& o) -> auto& { return o.formula.cell; }),
       intake_row(
           about_intake("resolution", kGroup,
-                       "Cells along the longest side of the box, between which the surface is sought; without a value "
-                       "64, and 32 a period"),
+                       "Cells along the longest side of the box, between which the surface is sought")
+              .takes("N")
+              .from(4)
+              .without("64, and 32 a period"),
           [](auto& o) -> auto& { return o.formula.resolution; }),
   };
 }
 
 const std::vector<Row<IntakeOptions>>& intake_rows() {
-  static const std::vector<Row<IntakeOptions>> all = [] {
-    std::vector<Row<IntakeOptions>> list;
-    for (const auto& part : {material_rows(), cell_rows(), repair_rows(), image_rows(), cad_rows(), formula_rows()})
-      list.insert(list.end(), part.begin(), part.end());
-    return list;
-  }();
+  static const auto all =
+      all_of<IntakeOptions>({material_rows(), cell_rows(), repair_rows(), image_rows(), cad_rows(), formula_rows()});
   return all;
 }
 
 }  // namespace
 
+}  // namespace octafront::options
+
+namespace octafront {
+
 const std::vector<OptionInfo>& intake_table() {
-  static const std::vector<OptionInfo> table = infos_of(intake_rows());
+  static const std::vector<OptionInfo> table = options::infos_of(options::intake_rows());
   return table;
 }
 
 OptionValue option_value(const IntakeOptions& options, std::string_view name) {
-  return row_named(intake_rows(), name).get(options);
+  return options::row_named(options::intake_rows(), name).get(options);
 }
 
 void set_option(IntakeOptions& options, std::string_view name, const OptionValue& value) {
-  row_named(intake_rows(), name).set(options, value);
+  options::row_named(options::intake_rows(), name).set(options, value);
+}
+
+void check_ranges(const IntakeOptions& options) {
+  options::check_rows(options::intake_rows(), options);
 }
 
 }  // namespace octafront

@@ -5,9 +5,11 @@
 #include <octafront/error.h>
 #include <octafront/option_table.h>
 
+#include <algorithm>
 #include <cmath>
 #include <cstdint>
 #include <functional>
+#include <initializer_list>
 #include <optional>
 #include <string>
 #include <string_view>
@@ -22,6 +24,24 @@ namespace octafront::options {
 using Kind = OptionInfo::Kind;
 
 inline constexpr double kLargestWhole = 9e18;
+
+/// An OptionInfo that is told one thing after the other.
+struct About : OptionInfo {
+  About(std::string_view its_name, std::string_view its_group, std::string_view its_tasks, std::string_view its_help) {
+    name = field = its_name, group = its_group, tasks = its_tasks, help = its_help;
+  }
+  About& called(std::string_view in_messages) { return field = in_messages, *this; }
+  About& takes(std::string_view its_letter) { return letter = its_letter, *this; }
+  About& length(std::string_view its_letter) { return is_length = true, letter = its_letter, *this; }
+  About& above(double bound) { return least = bound, is_above = true, *this; }
+  About& from(double bound) { return least = bound, *this; }
+  About& to(double bound) { return most = bound, *this; }
+  About& below(double bound) { return most = bound, is_below = true, *this; }
+  About& without(std::string_view value) { return unset = value, *this; }
+  About& also(std::string_view more_commands) { return commands = more_commands, *this; }
+  About& written(std::string_view on_the_line) { return typed = on_the_line, *this; }
+  About& common(std::string_view words) { return brief = words, *this; }
+};
 
 /// An option of `All`, and how to reach its value.
 template <class All>
@@ -151,6 +171,42 @@ Row<All> row_of_choice(OptionInfo info, Access field, const Names<Value>& names)
                                typed != nullptr ? fmt::format("; \"{}\" is none of them", *typed) : ""));
   };
   return {info, get, set};
+}
+
+/// A flag whose name says the opposite of its field.
+template <class All, class Access>
+Row<All> row_of_opposite(OptionInfo info, Access field) {
+  info.kind = Kind::kFlag;
+  return {info, [field](const All& o) -> OptionValue { return !field(o); },
+          [field, name = info.name](All& o, const OptionValue& v) { field(o) = !flag_of(name, v); }};
+}
+
+/// The rows of several groups as one list.
+template <class All>
+std::vector<Row<All>> all_of(std::initializer_list<std::vector<Row<All>>> groups) {
+  std::vector<Row<All>> list;
+  for (const auto& group : groups) list.insert(list.end(), group.begin(), group.end());
+  return list;
+}
+
+/// Throws OptionError for the first number that is not in its range.
+template <class All>
+void check_rows(const std::vector<Row<All>>& rows, const All& options) {
+  for (const Row<All>& r : rows) {
+    const OptionValue value = r.get(options);
+    const auto* whole = std::get_if<std::int64_t>(&value);
+    const auto* number = std::get_if<double>(&value);
+    if (whole == nullptr && number == nullptr) continue;
+    const double x = whole != nullptr ? static_cast<double>(*whole) : *number;
+    const OptionInfo& info = r.info;
+    const bool is_low = info.least && !(info.is_above ? x > *info.least : x >= *info.least);
+    const bool is_choice = info.choices.empty() || std::find(info.choices.begin(), info.choices.end(),
+                                                             fmt::format("{}", x)) != info.choices.end();
+    const bool is_high = info.most && !(info.is_below ? x < *info.most : x <= *info.most);
+    if (std::isfinite(x) && !is_low && !is_high && is_choice) continue;
+    throw OptionError(
+        fmt::format("`{}` is {}, but must be {}", info.field, x, info.range().empty() ? "a number" : info.range()));
+  }
 }
 
 /// What is known of each row.

@@ -1,7 +1,9 @@
 #include <octafront/domain.h>
 #include <octafront/error.h>
+#include <octafront/io.h>
 #include <octafront/option_table.h>
 
+#include <limits>
 #include <set>
 
 #include <gtest/gtest.h>
@@ -47,16 +49,18 @@ void expect_each_by_itself(const std::vector<OptionInfo>& table) {
 TEST(OptionTable, WhatIsSetIsThereAndNothingElseChanges) {
   expect_each_by_itself<Options>(option_table());
   expect_each_by_itself<IntakeOptions>(intake_table());
+  expect_each_by_itself<WriteOptions>(write_table());
 }
 
 TEST(OptionTable, NamesAreThereOnceAndSayWhatTheyAre) {
   std::set<std::string_view> names;
   std::vector<OptionInfo> all = option_table();
-  all.insert(all.end(), intake_table().begin(), intake_table().end());
+  for (const auto* table : {&intake_table(), &write_table()}) all.insert(all.end(), table->begin(), table->end());
   for (const OptionInfo& info : all) {
     EXPECT_TRUE(names.insert(info.name).second) << info.name;
     EXPECT_FALSE(info.help.empty() || info.group.empty() || info.tasks.empty()) << info.name;
-    EXPECT_EQ(info.kind == OptionInfo::Kind::kChoice, !info.choices.empty()) << info.name;
+    EXPECT_FALSE(info.kind == OptionInfo::Kind::kChoice && info.choices.empty()) << info.name;
+    EXPECT_TRUE(info.kind == OptionInfo::Kind::kFlag || !info.choices.empty() || !info.letter.empty()) << info.name;
   }
   EXPECT_GT(names.size(), 20u);
 }
@@ -82,6 +86,31 @@ TEST(OptionTable, WrongNamesAndValuesAreRefused) {
   refused("facets", 1.0, "`facets` is true or false");
   refused("interior", std::string("large"), "`interior` is one of uniform, graded; \"large\" is none of them");
   refused("interior", 1.0, "`interior` is one of uniform, graded");
+}
+
+TEST(OptionTable, RangesAreKeptAndSaid) {
+  check_ranges(Options{});
+  check_ranges(IntakeOptions{});
+  check_ranges(WriteOptions{});
+  const auto refuses = [](std::string_view name, double value) {
+    Options options;
+    set_option(options, name, value);
+    try {
+      check_ranges(options);
+    } catch (const OptionError& error) {
+      return std::string(error.what());
+    }
+    return std::string();
+  };
+  EXPECT_EQ(refuses("relaxation", 2), "`relaxation` is 2, but must be above 0 and at most 1");
+  EXPECT_EQ(refuses("relaxation", 0), "`relaxation` is 0, but must be above 0 and at most 1");
+  EXPECT_EQ(refuses("relaxation", 1), "");
+  EXPECT_EQ(refuses("feature_angle", 180), "`feature_angle` is 180, but must be above 0 and below 180");
+  EXPECT_EQ(refuses("ideal_distance", .2), "`ideal_distance` is 0.2, but must be from 0.3 to 1.5");
+  EXPECT_EQ(refuses("order", 3), "`order` is 3, but must be 1 or 2");
+  EXPECT_EQ(refuses("layers", 101), "`count` is 101, but must be from 0 to 100");
+  EXPECT_NE(refuses("size", std::numeric_limits<double>::quiet_NaN()), "");
+  EXPECT_NE(refuses("size", std::numeric_limits<double>::infinity()), "");
 }
 
 TEST(OptionTable, WholeNumbersAreNumbersToo) {

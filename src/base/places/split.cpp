@@ -4,9 +4,9 @@
 #include "base/core/disjoint_sets.h"
 #include "base/core/wording.h"
 #include "base/mesh/adjacency.h"
+#include "base/places/places.h"
 
 #include <algorithm>
-#include <charconv>
 #include <map>
 #include <optional>
 #include <set>
@@ -25,24 +25,18 @@ struct Asked {
   std::vector<std::uint32_t> patches;
 };
 
-std::string label_of(const std::vector<std::string>& names, std::size_t p) {
-  return p < names.size() && !names[p].empty() ? names[p] : fmt::format("{}", p + 1);
-}
-
-/// The patches of a name that have faces inside: a name may stand for one in each region, "fault (clay|clay)".
-/// `inside`: per patch. Throws OptionError.
-Asked inner_patches(const std::vector<char>& inside, const std::vector<std::string>& names, const std::string& name) {
-  Asked asked{name, {}};
-  std::string there;
-  for (std::uint32_t p = 0; p < inside.size(); ++p) {
-    if (!inside[p]) continue;
-    const std::string label = label_of(names, p);
-    there += (there.empty() ? "" : ", ") + label;
-    if (label == name || label.starts_with(name + " (") || fmt::format("{}", p + 1) == name) asked.patches.push_back(p);
+/// The patches with faces inside that are named. `inside`: per patch. Throws OptionError.
+std::vector<Asked> asked_for(const std::vector<std::string>& places, const std::vector<std::string>& names,
+                             const std::vector<char>& inside) {
+  std::vector<Asked> asked;
+  for (const std::string& text : places) {
+    const Place place = place_of("split", text);
+    if (place.is_in_space()) throw OptionError(fmt::format("`split` opens patches, and \"{}\" is none", text));
+    const auto* list = std::get_if<std::vector<std::string>>(&place.where);
+    for (const std::string& name : list != nullptr ? *list : std::vector{text})
+      asked.push_back({name, patches_called("split", names, inside, name)});
   }
-  if (!asked.patches.empty()) return asked;
-  throw OptionError(fmt::format("no patch \"{}\" has faces inside that could be split; {}", name,
-                                there.empty() ? "none has" : "those that have: " + there));
+  return asked;
 }
 
 void note_inside(std::vector<char>& inside, std::uint32_t patch) {
@@ -494,22 +488,21 @@ class Splitting {
 
 }  // namespace
 
-std::vector<std::string> split_patches(TetMesh& mesh, const std::vector<std::string>& names) {
+std::vector<std::string> split_patches(TetMesh& mesh, const std::vector<std::string>& places) {
   std::vector<char> inside;
   for (std::size_t f = 0; f < mesh.interfaces.size(); ++f) note_inside(inside, patch_at(mesh.interface_patch, f));
-  std::vector<Asked> asked;
-  for (const std::string& name : names) asked.push_back(inner_patches(inside, mesh.patch_names, name));
+  const std::vector<Asked> asked = asked_for(places, mesh.patch_names, inside);
   if (asked.empty()) return {};
   return {Splitting(mesh, asked).apply()};
 }
 
-void check_split(const SurfaceMesh& complex, const std::vector<std::string>& names) {
+void check_split(const SurfaceMesh& complex, const std::vector<std::string>& places) {
   std::vector<char> inside;
   for (std::size_t t = 0; t < complex.triangles.size(); ++t) {
     const Sides sides = complex.sides_of(t);
     if (sides[0] != kNone && sides[1] != kNone) note_inside(inside, complex.patch_of(t));
   }
-  for (const std::string& name : names) inner_patches(inside, complex.patch_names, name);
+  asked_for(places, complex.patch_names, inside);
 }
 
 }  // namespace octafront

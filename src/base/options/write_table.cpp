@@ -1,0 +1,81 @@
+#include <octafront/io.h>
+
+#include "base/options/rows.h"
+
+namespace octafront::options {
+
+namespace {
+
+About about_writing(std::string_view name, std::string_view help) {
+  return About(name, "Output", "mesh improve adapt", help).also("convert");
+}
+
+template <class Access>
+Row<WriteOptions> write_row(const OptionInfo& info, Access field) {
+  return row_of_field<WriteOptions>(info, field);
+}
+
+const std::vector<Row<WriteOptions>>& write_rows() {
+  static const std::vector<Row<WriteOptions>> all{
+      write_row(
+          about_writing("format", "Format by name, whatever the ending").takes("NAME").also("-"),
+          [](auto& o) -> auto& { return o.format; }),
+      write_row(
+          about_writing("ascii", "As text, of formats that are binary else"), [](auto& o) -> auto& { return o.ascii; }),
+      write_row(
+          about_writing("cells_only",
+                        "Tetrahedra alone, with regions and sets: no faces and edges, which some programs refuse "
+                        "beside them"),
+          [](auto& o) -> auto& { return o.cells_only; }),
+      write_row(
+          about_writing("cohesive",
+                        "Cohesive elements of no height between the two sides of what was split (Abaqus: COH3D6)"),
+          [](auto& o) -> auto& { return o.cohesive; }),
+      write_row(
+          about_writing("beams", "These curves are beams, too, names with commas between (Abaqus: B31, B32)")
+              .takes("NAME,..."),
+          [](auto& o) -> auto& { return o.beams; }),
+      // More parts than any machine has processes are a slip of the hand.
+      write_row(
+          about_writing("parts", "Divide the mesh into N parts, for programs on several processes; 0: it stays whole")
+              .takes("N")
+              .from(0)
+              .to(1'000'000),
+          [](auto& o) -> auto& { return o.parts; }),
+      row_of_choice<WriteOptions, Partitioner>(
+          about_writing("partitioner",
+                        "curve: parts that differ by one element at most, the same everywhere; metis: fewer faces "
+                        "between them"),
+          [](auto& o) -> auto& { return o.partitioner; },
+          {{"curve", Partitioner::kCurve}, {"metis", Partitioner::kMetis}}),
+      write_row(
+          about_writing("split_files", "Of Gmsh MSH 4.1 in parts: NAME_1.msh and so on, in the place of one file"),
+          [](auto& o) -> auto& { return o.split_files; }),
+  };
+  return all;
+}
+
+}  // namespace
+
+}  // namespace octafront::options
+
+namespace octafront {
+
+const std::vector<OptionInfo>& write_table() {
+  static const std::vector<OptionInfo> table = options::infos_of(options::write_rows());
+  return table;
+}
+
+OptionValue option_value(const WriteOptions& options, std::string_view name) {
+  return options::row_named(options::write_rows(), name).get(options);
+}
+
+void set_option(WriteOptions& options, std::string_view name, const OptionValue& value) {
+  options::row_named(options::write_rows(), name).set(options, value);
+}
+
+void check_ranges(const WriteOptions& options) {
+  options::check_rows(options::write_rows(), options);
+}
+
+}  // namespace octafront
