@@ -3,7 +3,7 @@
 #include <octafront/error.h>
 
 #include "formats/parts/mesh_parts.h"
-#include "formats/read/readers.h"
+#include "formats/table/formats.h"
 
 #include <algorithm>
 #include <cstdint>

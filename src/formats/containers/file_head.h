@@ -14,7 +14,7 @@ enum class Told {
   kFirstLetter,
   kLines,    ///< some of its lines
   kEnding,   ///< its name alone
-  kKeyword,  ///< a first word that others might have
+  kKeyword,  ///< first words that others might have
   kMagic,
 };
 

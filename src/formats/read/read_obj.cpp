@@ -220,7 +220,7 @@ bool looks_like_obj(const Input& input) {
 }  // namespace
 
 Told told_obj(const FileHead& head) {
-  return !head.is_binary && looks_like_obj(head.input) ? Told::kLines : Told::kNot;
+  return !head.is_binary && looks_like_obj(head.input) ? Told::kKeyword : Told::kNot;
 }
 
 SurfaceFile read_obj(const Input& input) {

@@ -2,6 +2,7 @@
 #include <octafront/io.h>
 
 #include "formats/small_files.h"
+#include "formats/table/formats.h"
 #include "support/complexes.h"
 #include "support/named_surfaces.h"
 
@@ -46,6 +47,17 @@ TEST(ReadSurface, KnowsEveryVariantByContent) {
         EXPECT_EQ(file.surface.points[file.surface.triangles[t][k]], tet.points[tet.triangles[t][k]]);
     EXPECT_TRUE(file.surface.source.empty()) << "triangle t is face t";
   }
+}
+
+TEST(ReadSurface, ContentDecidesOverAnyName) {
+  for (const auto& [name, bytes] : testing::small_surface_files())
+    for (const FormatInfo& other : known_formats()) {
+      // OFF without its keyword is told by its name.
+      if (other.endings.empty() || bytes.starts_with("4 4")) continue;
+      SCOPED_TRACE(name + " named " + std::string(other.endings));
+      const std::string ending(other.endings.substr(0, other.endings.find(' ')));
+      EXPECT_EQ(surface_of(bytes, "x" + ending).format, surface_of(bytes, name).format);
+    }
 }
 
 TEST(ReadSurface, PlyHoldsComplexes) {
@@ -187,6 +199,19 @@ TEST(WriteSurface, TheLocaleChangesNothing) {
   EXPECT_EQ(testing::file_bytes(folder / "b.obj"), before);
   EXPECT_EQ(read_surface(folder / "b.obj").surface, s);
   std::setlocale(LC_ALL, old.c_str());
+}
+
+TEST(KnownFormats, HaveARowThatTellsAndReadsThem) {
+  for (const io::Format& format : io::formats()) {
+    SCOPED_TRACE(format.info.name);
+    EXPECT_EQ(format.info.reads_surface, format.read_surface != nullptr);
+    EXPECT_EQ(format.info.reads_mesh, format.read_mesh != nullptr);
+    // Who has no way of telling is told by another row with the same reader.
+    const bool is_told = std::ranges::any_of(io::formats(), [&](const io::Format& other) {
+      return other.told != nullptr && other.read_mesh == format.read_mesh && other.read_surface == format.read_surface;
+    });
+    EXPECT_EQ(is_told, format.info.reads_surface || format.info.reads_mesh);
+  }
 }
 
 TEST(KnownFormats, CanDoWhatTheySay) {

@@ -6,7 +6,6 @@
 #include <octafront/validity.h>
 
 #include "formats/cube_text.h"
-#include "formats/read/readers.h"
 #include "formats/small_files.h"
 
 #include <algorithm>

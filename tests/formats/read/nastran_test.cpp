@@ -5,7 +5,6 @@
 #include <octafront/surface_mesh.h>
 
 #include "formats/cube_text.h"
-#include "formats/read/readers.h"
 #include "formats/small_files.h"
 
 #include <string>

@@ -3,7 +3,6 @@
 #include <octafront/io.h>
 
 #include "formats/cube_text.h"
-#include "formats/read/readers.h"
 #include "formats/small_files.h"
 
 #include <string>
