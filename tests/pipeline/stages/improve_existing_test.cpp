@@ -95,6 +95,18 @@ std::vector<std::vector<std::array<double, 3>>> placed_wide_cells(const TetMesh&
   return all;
 }
 
+/// 0 of sets of anything but elements.
+double volume_of_set(const TetMesh& mesh, std::size_t s) {
+  double volume = 0;
+  if (mesh.sets[s].kind != NamedSet::Kind::kElements) return volume;
+  for (const TetIndex t : mesh.sets[s].members) {
+    const auto& [a, b, c, d] = mesh.tets[t];
+    const Vec3 p = mesh.points[a];
+    volume += dot(cross(mesh.points[b] - p, mesh.points[c] - p), mesh.points[d] - p) / 6;
+  }
+  return volume;
+}
+
 TEST(ImproveExisting, LeavesWedgesAndPyramidsAsTheyAre) {
   TetMesh start = testing::mixed_mesh(4);
   // Inside the cubes of tetrahedra.
@@ -115,6 +127,12 @@ TEST(ImproveExisting, LeavesWedgesAndPyramidsAsTheyAre) {
   EXPECT_EQ(better.mesh.patch, start.patch);
   EXPECT_EQ(better.mesh.region_names, start.region_names);
   EXPECT_EQ(better.mesh.interfaces.size(), start.interfaces.size());
+  ASSERT_EQ(better.mesh.sets.size(), start.sets.size());
+  for (std::size_t s = 0; s < start.sets.size(); ++s) {
+    EXPECT_EQ(better.mesh.sets[s].name, start.sets[s].name);
+    EXPECT_FALSE(better.mesh.sets[s].members.empty()) << start.sets[s].name;
+    EXPECT_NEAR(volume_of_set(better.mesh, s), volume_of_set(start, s), 1e-9) << start.sets[s].name;
+  }
   const Improved again = improve_existing(start);
   EXPECT_EQ(again.mesh, better.mesh);
 }
