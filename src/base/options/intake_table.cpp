@@ -180,7 +180,7 @@ std::vector<Row<IntakeOptions>> cad_rows() {
           about_intake("cad_size", kGroup,
                        "The edge length that elements will have: triangles are made fine enough for it, and no line is "
                        "kept where narrow faces meet smoothly")
-              .length("H")
+              .takes("H")
               .above(0)
               .without("as size or elements ask, else a fortieth of the diagonal, and all lines")
               .also("-"),

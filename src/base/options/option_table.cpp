@@ -59,7 +59,7 @@ std::vector<Row<Options>> size_rows() {
       row(
           of("chord_error", "Sizes by which triangles stay this near to a curved surface, in units of the input")
               .called("max_deviation")
-              .length("D")
+              .takes("D")
               .above(0)
               .also("-"),
           [](auto& o) -> auto& { return o.size.chord_error; }),
@@ -328,10 +328,6 @@ std::vector<Row<Options>> improve_rows() {
               .from(0),
           [](auto& o) -> auto& { return o.improve.seconds; }),
       row(
-          of("no_bridging", "Elements with all corners on walls (boundary, walls between regions) get a vertex inside",
-             "Improvement", "mesh improve adapt"),
-          [](auto& o) -> auto& { return o.improve.no_bridging; }),
-      row(
           [&] {
             About order = of("order",
                              "2: elements of second order, with mid-side nodes; those of the boundary on the smooth "
@@ -354,6 +350,10 @@ std::vector<Row<Options>> improve_rows() {
 std::vector<Row<Options>> adapt_rows() {
   const auto of = [](std::string_view name, std::string_view help) { return About(name, "Adaptation", "adapt", help); };
   return {
+      row(
+          About("no_bridging", "Improvement", "mesh improve adapt",
+                "Elements with all corners on walls (boundary, walls between regions) get a vertex inside"),
+          [](auto& o) -> auto& { return o.improve.no_bridging; }),
       row(
           of("only",
              "Places that may change, with semicolons between: box:X0,Y0,Z0,X1,Y1,Z1, sphere:X,Y,Z,R, or regions, "
