@@ -225,7 +225,11 @@ Arguments& Program::arguments(int argc, char** argv) {
   note_command(*app_.get_subcommands().front(), a);
   a.command_line = command_line_of(argc, argv);
   a.words_with_line_ends = words_with_line_ends(argc, argv);
-  check_ranges(a.writing);
+  try {
+    check_ranges(a.intake), check_ranges(a.writing);
+  } catch (const OptionError& error) {
+    throw OptionError(a.names.translated(error.what()));
+  }
   set_process_limits(a.limits);
   if (a.input == kStandardOutput) a.input = "/dev/stdin";
   for (std::filesystem::path& body : a.bodies)

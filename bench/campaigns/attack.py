@@ -131,7 +131,7 @@ class Attack:
                   "360/0@z", "1e-300@z", "0,0,0,0,0,0", "first", "2mm", "2parsec", "9" * 400]
         commands = {}
         for command in ("mesh", "surface", "repair", "size", "improve", "adapt", "convert", "info", "check", "report"):
-            text = subprocess.run([self.program, "help", command], capture_output=True, text=True).stdout
+            text = subprocess.run([self.program, "help", command, "all"], capture_output=True, text=True).stdout
             commands[command] = sorted(set(re.findall(r"(?<![\w-])--[a-z][a-z-]+", text)) - {"--json", "--help", "--man"})
         mesh = self.folder / "mesh.msh"
         subprocess.run([self.program, "mesh", self.folder / "box.off", "-o", mesh, "--size", "0.5", "-q"], check=True)

@@ -50,7 +50,7 @@ class Schema(unittest.TestCase):
     def test_ranges_are_those_of_the_program(self):
         """A value at each end is taken, one beyond it refused."""
         typed = {"kind": "image"}
-        for table in ("options", "writing"):
+        for table in ("options", "intake", "writing"):
             for name, rule in schema_of(OCTAFRONT)["$defs"][table]["properties"].items():
                 option = typed.get(name, name)
                 known = schema_of(OCTAFRONT)["$defs"]["options_of_mesh"]["properties"]
