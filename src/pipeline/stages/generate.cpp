@@ -2,35 +2,27 @@
 #include <octafront/generate.h>
 #include <octafront/inside.h>
 #include <octafront/limits.h>
-#include <octafront/named_groups.h>
 #include <octafront/split.h>
 
 #include "base/comm/packing.h"
 #include "base/core/wording.h"
 #include "base/shared/shared_tets.h"
 #include "pipeline/inside/fins.h"
-#include "pipeline/stages/adapting.h"
 #include "pipeline/stages/agreement.h"
+#include "pipeline/stages/finish.h"
 #include "pipeline/stages/kept_shape.h"
 #include "pipeline/stages/kept_volumes.h"
 #include "pipeline/stages/measure.h"
 #include "pipeline/stages/methods.h"
-#include "pipeline/stages/periodic.h"
 #include "pipeline/stages/requirements.h"
-#include "pipeline/stages/shell.h"
-#include "pipeline/stages/stages.h"
 #include "pipeline/stages/true_shape.h"
 #include "pipeline/stages/volume_tolerance.h"
 
 #include <algorithm>
-#include <array>
-#include <cstdint>
 #include <optional>
 #include <string>
 #include <utility>
 #include <vector>
-
-#include <fmt/core.h>
 
 namespace octafront {
 
@@ -51,51 +43,6 @@ SizeField choose_sizes(const Prepared& input, const Domain& domain, const Option
   return sizes;
 }
 
-/// Curves where patches meet, and what stands on fins in their place.
-void finish_curves(TetMesh& mesh, Fins* fins, Run& run) {
-  if (fins == nullptr) return add_patch_curves(mesh);
-  run.stage("lines and points", [&](const Stage& stage) {
-    fins->leave(mesh);
-    add_patch_curves(mesh);
-    for (std::string& note : fins->enter(mesh)) stage.note(std::move(note));
-  });
-}
-
-void place_sets(const Domain& domain, TetMesh& mesh, Run& run) {
-  if (domain.sets.empty()) return;
-  run.stage("sets", [&](const Stage& stage) {
-    if (const std::string missing = add_placed_sets(mesh, domain.sets); !missing.empty())
-      stage.note(missing + "; with `keep_surface` those of the surface stay");
-  });
-}
-
-void split(TetMesh& mesh, Run& run) {
-  if (run.options.split.empty()) return;
-  run.stage("split", [&](const Stage& stage) {
-    for (std::string& note : split_patches(mesh, names_listed(run.options.split, mesh.patch_names)))
-      stage.note(std::move(note));
-  });
-  check_result(mesh, nullptr, run);
-}
-
-/// Whether what follows improvement looks at elements of all ranks together.
-bool wants_all(const Domain& domain, const Prepared& input, const Filled& filled, const Run& run, const Fins* fins) {
-  const Options& options = run.options;
-  return domain.geometry || !domain.true_volumes.empty() || !domain.sets.empty() || fins != nullptr ||
-         options.order > 1 || options.improve.no_bridging || options.volume.shell != 0 || !options.split.empty() ||
-         options.surface.keep_volumes || requires_something(options.require) ||
-         owes_volume(input, filled.boundary, run);
-}
-
-/// What of the input is narrow at an element; nullopt also where other ranks have it.
-std::optional<NarrowPlace> narrow_place_of(const Prepared& input, const Filled& filled, std::uint64_t tet,
-                                           const Options& options) {
-  if (filled.tets != Tets::kAll || tet >= filled.mesh.tets.size()) return std::nullopt;
-  std::array<Vec3, 4> element;
-  for (std::size_t i = 0; i < 4; ++i) element[i] = filled.mesh.points[filled.mesh.tets[tet][i]];
-  return narrow_place_at(input.surface.mesh(), element, keeps_surface(options));
-}
-
 /// `fins`: of the domain's lines and points, which it has as sheets; null: it has none.
 Result generate_once(const Domain& domain, const Options& asked, const RunContext& context, Fins* fins) {
   const Options options = suited(domain, asked);
@@ -113,35 +60,9 @@ Result generate_once(const Domain& domain, const Options& asked, const RunContex
   agree_on(filled, "mesh as it was filled", context);
   improve_in_shape(input, filled, run);
   agree_on(filled, "improved mesh", context);
-  if (wants_all(domain, input, filled, run, fins)) make_whole(filled, run);
-  if (!options.layers.outside) add_layers(input, filled, run);
-  note_missed_elements(filled, run);
-  layer_walls(filled, run);
-  place_on_geometry(input, filled, run);
-  keep_mesh_volumes(input, wanted_volumes(input, domain), filled, run);
-  check_shape(input, filled, run);
-  if (options.layers.outside) add_layers(input, filled, run);
-  refuse_lost_volumes(domain, filled, run);
-  divide_bridges(filled.mesh, run);
-  raise_order(input, filled, run);
-  agree_on(filled, "mesh", context);
-  if (!input.geometry) name_patches(input, filled);
-  name_parts(input, filled, run);
-  pair_nodes(input, filled.mesh, run);
-  check_result(filled, run);
-  finish_curves(filled.mesh, fins, run);
-  place_sets(domain, filled.mesh, run);
-  split(filled.mesh, run);
-  run.stage("summary", [&](const Stage& stage) {
-    describe(filled.mesh, run.report, comm_of(filled, run));
-    require_elements(static_cast<double>(run.report.tets), "the mesh");
-    run.comm().agree(run.report.hash, "mesh at the end");
-    describe_true_volumes(filled, domain, run.report);
-    describe_input_volumes(input, filled, run.report);
-    if (!filled.layers) describe_sizes(filled.mesh, filled.boundary.sizes, run.report, comm_of(filled, run));
-    note_volumes(input, filled, run.options, run.report, stage);
-    note_least(run.report, stage, [&](std::uint64_t tet) { return narrow_place_of(input, filled, tet, run.options); });
-  });
+  const Finishing made{domain, input, filled, fins, run};
+  finish(made);
+  describe(made);
   if (context.ranks == nullptr || !context.ranks->shares_tets) make_whole(filled, run);
   return {std::move(filled.mesh), filled.boundary.sizes, run.close(), filled.tets == Tets::kShare};
 }
