@@ -27,12 +27,16 @@ if(OCTAFRONT_SANITIZE)
   target_link_options(octafront_flags INTERFACE -fsanitize=${OCTAFRONT_SANITIZE})
 endif()
 
+# Meshing itself is compiled as the build type says. What is off the hot path (LIGHT: files, doors, words, the order of the
+# stages) is compiled at -O1 in a release: code generation is most of the compiler's time, and a third of it is saved.
+set(light_options $<$<CONFIG:Release>:-O1>)
+
 # octafront_precompile(TARGET OWNER): TARGET shares the precompiled headers of OWNER, which may be itself (and may name
-# more). They are the standard library's, never ours or those of other libraries: good whatever we edit and link.
+# more). They are the standard library's, and of others' only what every wing has: good whatever we edit and link.
 function(octafront_precompile target owner)
   if(OCTAFRONT_PCH AND target STREQUAL owner)
-    target_precompile_headers(${target} PRIVATE <algorithm> <array> <cmath> <cstdint> <functional> <limits> <memory>
-                              <numeric> <optional> <span> <string> <string_view> <tuple> <utility> <vector> ${ARGN})
+    target_precompile_headers(${target} PRIVATE <algorithm> <array> <cmath> <cstdint> <functional> <limits> <map> <memory>
+                              <numeric> <optional> <set> <span> <string> <string_view> <tuple> <utility> <vector> ${ARGN})
   elseif(OCTAFRONT_PCH)
     target_precompile_headers(${target} REUSE_FROM ${owner})
   endif()
@@ -40,11 +44,27 @@ endfunction()
 
 if(OCTAFRONT_PCH)
   file(CONFIGURE OUTPUT ${PROJECT_BINARY_DIR}/octafront_pch.cpp CONTENT "")
-  add_library(octafront_pch OBJECT ${PROJECT_BINARY_DIR}/octafront_pch.cpp)
-  set_target_properties(octafront_pch PROPERTIES POSITION_INDEPENDENT_CODE ${OCTAFRONT_PIC})
-  target_link_libraries(octafront_pch PRIVATE octafront_flags)
-  octafront_precompile(octafront_pch octafront_pch)
+  foreach(pch octafront_pch octafront_light_pch)
+    add_library(${pch} OBJECT ${PROJECT_BINARY_DIR}/octafront_pch.cpp)
+    set_target_properties(${pch} PROPERTIES POSITION_INDEPENDENT_CODE ${OCTAFRONT_PIC})
+    target_link_libraries(${pch} PRIVATE octafront_flags fmt::fmt)
+  endforeach()
+  target_compile_options(octafront_light_pch PRIVATE ${light_options})
+  octafront_precompile(octafront_pch octafront_pch <fmt/core.h>)
+  octafront_precompile(octafront_light_pch octafront_light_pch <filesystem> <fmt/format.h> <nlohmann/json.hpp>)
 endif()
+
+# octafront_compile(TARGET [LIGHT]): what all of our libraries are compiled with.
+function(octafront_compile target)
+  target_link_libraries(${target} PRIVATE octafront_flags)
+  if(LIGHT IN_LIST ARGN)
+    target_compile_options(${target} PRIVATE ${light_options})
+    octafront_precompile(${target} octafront_light_pch)
+  else()
+    octafront_precompile(${target} octafront_pch)
+  endif()
+  octafront_unity(${target})
+endfunction()
 
 # octafront_unity(TARGET SOURCES ...): TARGET is compiled many sources at a time; the SOURCES stay objects of their own.
 # tests/house sees to it that no two sources of a wing give the same name to different things.
@@ -53,29 +73,61 @@ function(octafront_unity target)
   set_source_files_properties(${ARGN} PROPERTIES SKIP_UNITY_BUILD_INCLUSION ON)
 endfunction()
 
-# octafront_wing(NAME [WINGS ...] [LIBS ...]): a static library of the rooms that follow. WINGS are those that the rows of
-# its rooms in src/NAME/README.md name (tests/house compares).
+# octafront_wing(NAME [LIGHT] [WINGS ...] [LIBS ...]): a static library of the rooms that follow. WINGS are those that the
+# rows of its rooms in src/NAME/README.md name (tests/house compares).
 function(octafront_wing name)
-  cmake_parse_arguments(WING "" "" "WINGS;LIBS" ${ARGN})
+  cmake_parse_arguments(WING "LIGHT" "" "WINGS;LIBS" ${ARGN})
   set(target octafront_${name})
   add_library(${target} STATIC)
   set_target_properties(${target} PROPERTIES LINKER_LANGUAGE CXX POSITION_INDEPENDENT_CODE ${OCTAFRONT_PIC})
   target_include_directories(${target} PUBLIC ${PROJECT_SOURCE_DIR}/include ${PROJECT_SOURCE_DIR}/src)
-  target_link_libraries(${target} PRIVATE octafront_flags PUBLIC ${WING_LIBS})
+  target_link_libraries(${target} PUBLIC ${WING_LIBS})
   foreach(wing IN LISTS WING_WINGS)
     target_link_libraries(${target} PUBLIC octafront_${wing})
   endforeach()
-  octafront_precompile(${target} octafront_pch)
-  octafront_unity(${target})
+  if(WING_LIGHT)
+    octafront_compile(${target} LIGHT)
+  else()
+    octafront_compile(${target})
+  endif()
 endfunction()
 
-# octafront_room(WING/ROOM SOURCES ...): the sources of a room, from its folder; of a wing that is one room: its own.
+# octafront_part(WING PART [LIGHT] [APART]): a part of a wing that is compiled in another way, octafront_WING_PART. APART:
+# it is in the libraries that users link, not in the wing's.
+function(octafront_part wing part)
+  set(target octafront_${wing}_${part})
+  add_library(${target} OBJECT)
+  set_target_properties(${target} PROPERTIES POSITION_INDEPENDENT_CODE ${OCTAFRONT_PIC})
+  target_include_directories(${target} PRIVATE ${PROJECT_SOURCE_DIR}/include ${PROJECT_SOURCE_DIR}/src)
+  target_link_libraries(${target} PRIVATE fmt::fmt)
+  octafront_compile(${target} ${ARGN})
+  if(NOT APART IN_LIST ARGN)
+    target_sources(octafront_${wing} PRIVATE $<TARGET_OBJECTS:${target}>)
+  endif()
+  set_property(GLOBAL APPEND PROPERTY octafront_parts_of_${wing} ${target})
+endfunction()
+
+# octafront_objects(VARIABLE WING): the objects of a wing, those of its parts with them.
+function(octafront_objects variable wing)
+  get_property(parts GLOBAL PROPERTY octafront_parts_of_${wing})
+  list(TRANSFORM parts REPLACE "(.+)" "$<TARGET_OBJECTS:\\1>")
+  set(${variable} $<TARGET_OBJECTS:octafront_${wing}> ${parts} PARENT_SCOPE)
+endfunction()
+
+# octafront_room(WING/ROOM [LIGHT] SOURCES ...): the sources of a room, from its folder; of a wing that is one room: its own.
 function(octafront_room path)
-  cmake_parse_arguments(ROOM "" "" "SOURCES" ${ARGN})
+  cmake_parse_arguments(ROOM "LIGHT" "" "SOURCES" ${ARGN})
   string(REGEX MATCH "^([a-z]+)/?(.*)" path ${path})
-  set(target octafront_${CMAKE_MATCH_1})
+  set(wing ${CMAKE_MATCH_1})
+  set(target octafront_${wing})
   if(CMAKE_MATCH_2)
     list(TRANSFORM ROOM_SOURCES PREPEND ${CMAKE_MATCH_2}/ REGEX "^[^/]")
+  endif()
+  if(ROOM_LIGHT)
+    set(target octafront_${wing}_light)
+    if(NOT TARGET ${target})
+      octafront_part(${wing} light LIGHT)
+    endif()
   endif()
   target_sources(${target} PRIVATE ${ROOM_SOURCES})
 endfunction()
