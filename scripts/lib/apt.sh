@@ -22,6 +22,8 @@ need_packages() {
 
 # What building needs, and what the tests need beyond it.
 build_packages=(g++ cmake ninja-build libtbb-dev zlib1g-dev libfmt-dev libcli11-dev nlohmann-json3-dev libhdf5-dev)
+# All of these but HDF5, the last: what is asked of a first build.
+first_packages=("${build_packages[@]:0:${#build_packages[@]}-1}")
 test_packages=(pkg-config libgtest-dev librapidcheck-dev libmetis-dev python3 python3-numpy python3-venv dpkg-dev file)
 # What octafront-cad stands on, which reads STEP, IGES and BREP; without it the rest is built.
 cad_packages=(libocct-data-exchange-dev libocct-ocaf-dev libocct-modeling-algorithms-dev libocct-modeling-data-dev libocct-foundation-dev)
