@@ -1,6 +1,7 @@
 // What became of a damaged model whose answer is known: octafront_judge_answer CASE.json RESULT.
 // CASE.json is what bench/models/damage_models.py writes; RESULT a mesh or a surface. Prints one JSON object of
-// measurements; bench/run/known_answers.py says what they should be. Knows nothing of repair: it asks the undamaged solids.
+// measurements; bench/run/known_answers.py says what they should be. Knows nothing of repair: it asks the undamaged
+// solids.
 
 #include <octafront/octafront.h>
 

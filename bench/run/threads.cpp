@@ -1,5 +1,5 @@
-// One mesh by one thread that times every task: octafront_threads MODEL ELEMENTS MESH. Prints for bench/run/threads.py what
-// is serial in each stage and in all, and how long 2, 16 and 64 threads would take, as JSON.
+// One mesh by one thread that times every task: octafront_threads MODEL ELEMENTS MESH. Prints for bench/run/threads.py
+// what is serial in each stage and in all, and how long 2, 16 and 64 threads would take, as JSON.
 
 #include <octafront/octafront.h>
 

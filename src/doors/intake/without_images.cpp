@@ -14,8 +14,9 @@ namespace octafront {
 namespace {
 
 [[noreturn]] void refuse(const std::string& file = "this input") {
-  throw InputError(file + ": this octafront was built without images and formulas. Build it with OCTAFRONT_IMAGES=ON, as "
-                          "`scripts/quickstart.sh IMAGE` does");
+  throw InputError(file +
+                   ": this octafront was built without images and formulas. Build it with OCTAFRONT_IMAGES=ON, as "
+                   "`scripts/quickstart.sh IMAGE` does");
 }
 
 bool ends_like_an_image(const std::string& file) {

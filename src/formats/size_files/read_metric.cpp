@@ -7,8 +7,8 @@
 #include "formats/containers/input.h"
 #include "formats/containers/scanner.h"
 #include "formats/parts/medit_sections.h"
-#include "formats/table/formats.h"
 #include "formats/size_files/readers.h"
+#include "formats/table/formats.h"
 
 #include <algorithm>
 #include <array>

@@ -6,8 +6,8 @@
 #include "formats/containers/input.h"
 #include "formats/containers/named_file.h"
 #include "formats/containers/scanner.h"
-#include "formats/table/formats.h"
 #include "formats/size_files/readers.h"
+#include "formats/table/formats.h"
 
 #include <cmath>
 #include <filesystem>

@@ -21,15 +21,15 @@ namespace octafront {
 /// not change, and is the user's own. With it, and unless options.move_boundary is off, vertices of the boundary slide
 /// along the surface or curve that they lie on, corners stay, and edges inside patches may turn; the boundary stays as
 /// near to the input as it was (see BoundaryGuide::keeps_truth), free of self-intersections (exactly), with the same
-/// number of triangles, each of the same patch, unless the input has a tolerance: see edit_boundary(). All that hangs on
-/// the mesh stays with what it belongs to (KeptLabels); of sets of faces and of curves on a boundary that may change the
-/// borders and ends must be features of the input. Elements that must not change need a mesh whose boundary stays. No
-/// pass makes the worst element worse, and none inverts one (exact signs). On an exception
-/// the mesh is lost. Throws OptionError, Cancelled, and MeshingError if the faces of the mesh do not match. The
-/// report gets, for each kind of pass, the places looked at and those changed, in all pieces. Returns true if the
-/// boundary changed; `features`, where given, then become those of the new boundary, in its numbering (they may be
-/// input->of_mesh). `tets`: what of them each of several ranks gives, and gets back. `before_stage` is for tests: where
-/// the elements are kept changes nothing.
+/// number of triangles, each of the same patch, unless the input has a tolerance: see edit_boundary(). All that hangs
+/// on the mesh stays with what it belongs to (KeptLabels); of sets of faces and of curves on a boundary that may change
+/// the borders and ends must be features of the input. Elements that must not change need a mesh whose boundary stays.
+/// No pass makes the worst element worse, and none inverts one (exact signs). On an exception the mesh is lost. Throws
+/// OptionError, Cancelled, and MeshingError if the faces of the mesh do not match. The report gets, for each kind of
+/// pass, the places looked at and those changed, in all pieces. Returns true if the boundary changed; `features`, where
+/// given, then become those of the new boundary, in its numbering (they may be input->of_mesh). `tets`: what of them
+/// each of several ranks gives, and gets back. `before_stage` is for tests: where the elements are kept changes
+/// nothing.
 bool improve_mesh(TetMesh& mesh, const improve::BoundaryInput* input, const ImproveOptions& options, const Stage& stage,
                   Features* features = nullptr, Tets tets = Tets::kAll,
                   const improve::MeshOfPieces::BeforeStage& before_stage = {});

@@ -11,9 +11,9 @@
 
 namespace octafront::layers {
 
-/// Per triangle 1 if it lies at one of the places, separated by commas; of regions the walls around them, but a patch goes before a region of its
-/// name; all where
-/// `names` is empty. Throws OptionError for what is no place of the surface.
+/// Per triangle 1 if it lies at one of the places, separated by commas; of regions the walls around them, but a patch
+/// goes before a region of its name; all where `names` is empty. Throws OptionError for what is no place of the
+/// surface.
 std::vector<std::uint8_t> walls_named(const SurfaceMesh& surface, const std::string& names);
 
 /// The regions that have one of these names, separated by commas; all where `names` is empty. Throws OptionError for
