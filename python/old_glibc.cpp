@@ -1,9 +1,6 @@
 // Functions of newer versions of glibc that libstdc++ and ours ask for, on top of those that an older one has: see
 // backend/old_glibc.py. Compiled into what is to run there, and hidden from others.
 
-#include <cerrno>
-#include <cstddef>
-#include <cstdint>
 #include <ctime>
 
 #include <fcntl.h>
@@ -11,6 +8,10 @@
 #include <sys/stat.h>
 #include <sys/syscall.h>
 #include <unistd.h>
+
+#include <cerrno>
+#include <cstddef>
+#include <cstdint>
 
 extern "C" {
 

@@ -710,7 +710,7 @@ class Refusals(Case):
         self.refused(TypeError, "positional", octafront.mesh, *cube(), 0.1)
 
     def test_options(self):
-        self.refused(octafront.OptionError, "`size` must be a number above 0, but is -1", octafront.mesh, *cube(), size=-1)
+        self.refused(octafront.OptionError, "`size` is -1, but must be above 0", octafront.mesh, *cube(), size=-1)
         self.refused(octafront.OptionError, "`size` and `elements` contradict", octafront.mesh, *cube(), size=1, elements=9)
         self.refused(octafront.OptionError, "`size` needs a number", octafront.mesh, *cube(), size="large")
         self.refused(octafront.OptionError, "`size` is nan: it must be finite", octafront.mesh, *cube(), size=float("nan"))
@@ -1175,7 +1175,7 @@ class Package(Case):
         walls = mesh.report["layers"]
         self.assertEqual([w["patch"] for w in walls], ["a", "b"])
         self.assertEqual({w["share_full"] for w in walls}, {1})
-        with self.assertRaisesRegex(octafront.OptionError, "no patch"):
+        with self.assertRaisesRegex(octafront.OptionError, "no region or patch"):
             octafront.mesh(surface, size=0.3, layers=3, first=0.01, on="z")
 
     def test_wedges_and_pyramids(self):

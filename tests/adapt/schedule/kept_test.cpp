@@ -126,7 +126,8 @@ TEST(AdaptKept, UnknownNamesAreRefusedWithThoseThatThereAre) {
       keeping(named_cube(2), 0.3, wrong);
       FAIL() << wrong;
     } catch (const OptionError& error) {
-      EXPECT_NE(std::string(error.what()).find("it has a, b, c, d, e, f"), std::string::npos) << error.what();
+      EXPECT_NE(std::string(error.what()).find("patches \"a\", \"b\", \"c\", \"d\", \"e\", \"f\""), std::string::npos)
+          << error.what();
     }
 }
 

@@ -266,7 +266,7 @@ TEST(PeriodicMaps, WhatIsNotTheSameIsRefusedWithAPlace) {
   };
   const SurfaceMesh ring = sector(30, 1, straight, true);
   EXPECT_THAT(refused(ring, "31@z"), HasSubstr("leads no part of the surface onto another one"));
-  EXPECT_THAT(refused(ring, "left:wrong=30@z"), HasSubstr("names a patch \"wrong\""));
+  EXPECT_THAT(refused(ring, "left:wrong=30@z"), HasSubstr("no region or patch \"wrong\""));
   EXPECT_THAT(refused(ring, "left:rims=30@z"), HasSubstr("has a line at ("));
   EXPECT_THAT(refused(ring, "left:right=29.9@z"), HasSubstr("has a line at ("));
 }
