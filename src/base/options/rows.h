@@ -135,13 +135,19 @@ struct Conversion<std::optional<Value>> {
   }
 };
 
+/// By where the field is: compiled once for each type of field, not for each option.
+template <class All, class Field>
+Row<All> row_at(OptionInfo info, const Field& (*of)(const All&), Field& (*in)(All&)) {
+  info.kind = Conversion<Field>::kKind;
+  return {info, [of](const All& o) { return Conversion<Field>::shown(of(o)); },
+          [in, name = info.name](All& o, const OptionValue& v) { in(o) = Conversion<Field>::taken(name, v); }};
+}
+
 /// `field` maps All, const or not, to the field.
 template <class All, class Access>
 Row<All> row_of_field(OptionInfo info, Access field) {
   using Field = std::remove_cvref_t<decltype(field(std::declval<All&>()))>;
-  info.kind = Conversion<Field>::kKind;
-  return {info, [field](const All& o) { return Conversion<Field>::shown(field(o)); },
-          [field, name = info.name](All& o, const OptionValue& v) { field(o) = Conversion<Field>::taken(name, v); }};
+  return row_at<All, Field>(std::move(info), field, field);
 }
 
 template <class Value>
