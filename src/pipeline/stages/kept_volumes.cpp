@@ -194,6 +194,11 @@ void keep_mesh_volumes(const Prepared& input, const std::vector<double>& wanted,
   });
 }
 
+void describe_needed(double size, Report& report) {
+  constexpr double kRegularTet = 0.11785113;  // its volume over the cube of its edge
+  for (RegionSummary& region : report.regions) region.needed = region.volume / (kRegularTet * size * size * size);
+}
+
 void describe_input_volumes(const Prepared& input, const Filled& filled, Report& report) {
   // The bodies of one surface are regions of the mesh, and their volumes are known together.
   const bool is_by_region = input.volumes.size() > 1 || report.regions.size() == 1;

@@ -390,7 +390,8 @@ SizeField choose_sizes(const Prepared& input, Run& run) {
                ? size_field_of_surface(input.surface, size, stage)
                : make_size_field(input.surface, size, stage,
                                  {input.bound, input.closed.is_in_it, run.options.surface.volume_tolerance.has_value(),
-                                  input.geometry ? kTurnsOfGeometry : 0, run.options.order > 1},
+                                  input.geometry ? kTurnsOfGeometry : 0, run.options.order > 1,
+                                  run.options.surface.finest},
                                  budget);
   });
   const MethodTraits& method = traits_of(run.options.method);
@@ -413,7 +414,7 @@ Remeshed triangulate(const Prepared& input, const SizeField& sizes, Run& run) {
     const bool is_coarse = input.geometry != nullptr && has_automatic_sizes(run.options);
     const FrontLimits limits{.slack = slack,
                              .budget = budget,
-                             .least = size.min_size.value_or(0),
+                             .least = std::max(size.min_size.value_or(0), surface.finest),
                              .narrowest_strip = kNarrowOfGiven * size.size.value_or(0),
                              .rise = size.gradation ? 0
                                      : is_coarse    ? kRiseFromStripsOfGeometry

@@ -67,6 +67,7 @@ Json json_of(const std::vector<RegionSummary>& regions) {
                    {"quality", json_of(regions[r].quality)}});
     if (regions[r].input_volume > 0) all.back()["input_volume"] = regions[r].input_volume;
     if (regions[r].layers_volume > 0) all.back()["layers_volume"] = regions[r].layers_volume;
+    if (regions[r].needed > 0) all.back()["needed_tets"] = regions[r].needed;
     if (regions[r].true_volume > 0) all.back()["true_volume"] = regions[r].true_volume;
   }
   return all;

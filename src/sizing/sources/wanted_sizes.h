@@ -34,6 +34,8 @@ struct FaceRules {
   double turns = 0;
   /// Elements are to be curved: automatic ones are kSecondOrderEdge times as large, and details as fine.
   bool curved = false;
+  /// Where the body is thin it asks for no size below this; 0: there is no such limit.
+  double least = 0;
 };
 
 /// An edge of second order has a node in its middle, and says as much as two.

@@ -39,7 +39,7 @@ struct Corner {
 class CornerFitter {
  public:
   CornerFitter(const InputSurface& input, const SeamedSurface& seamed, const SeamedCurves& chained,
-               const SizeField& sizes, double least)
+               const SizeField& sizes, const LeastSizes& least)
       : mesh_(input.mesh), place_(seamed.place), curves_(chained.curves), sizes_(sizes), least_(least) {
     for (std::uint32_t c = 0; c < curves_.size(); ++c)
       if (chained.group[c] == c) add(c);
@@ -118,7 +118,7 @@ class CornerFitter {
   }
 
   void add_place(Vec3 p, double room, std::vector<PointSize>& places) const {
-    const double size = sizes_.at(p), wanted = std::max({kSizePerRoom * room, kFloor * size, least_});
+    const double size = sizes_.at(p), wanted = std::max({kSizePerRoom * room, kFloor * size, least_.at(p)});
     if (wanted < kWorthwhileAtCorner * size) places.push_back({p, wanted});
   }
 
@@ -126,7 +126,7 @@ class CornerFitter {
   const std::vector<VertexIndex>& place_;
   const std::vector<Curve>& curves_;
   const SizeField& sizes_;
-  const double least_;
+  const LeastSizes& least_;
   std::map<VertexIndex, Corner> corners_;  ///< by their place in the complex
   std::vector<Triangle> segments_;         ///< of all curves, flat triangles for the tree
   std::vector<std::uint32_t> curve_of_;    ///< per segment
@@ -137,7 +137,7 @@ class CornerFitter {
 }  // namespace
 
 SizeField fitted_to_corners(const InputSurface& input, const SeamedSurface& seamed, std::vector<std::uint8_t> is_fixed,
-                            const SizeField& sizes, double least, const RunContext& context) {
+                            const SizeField& sizes, const LeastSizes& least, const RunContext& context) {
   const SeamedCurves chained = chained_curves(input, seamed, sizes, is_fixed);
   return capped_at(sizes, CornerFitter(input, seamed, chained, sizes, least).run(context), context,
                    {.gradation = kSteepAroundCorners});

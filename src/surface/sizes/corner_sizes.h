@@ -1,6 +1,7 @@
 #pragma once
 
 #include "surface/seams/seams.h"
+#include "surface/sizes/least_sizes.h"
 
 #include <cstdint>
 #include <vector>
@@ -13,6 +14,6 @@ namespace octafront::remeshing {
 /// wanted size would be flat. Away from such places sizes rise steeply. None falls below `least`. `is_fixed` as of
 /// chained_curves().
 SizeField fitted_to_corners(const InputSurface& input, const SeamedSurface& seamed, std::vector<std::uint8_t> is_fixed,
-                            const SizeField& sizes, double least, const RunContext& context);
+                            const SizeField& sizes, const LeastSizes& least, const RunContext& context);
 
 }  // namespace octafront::remeshing

@@ -122,6 +122,7 @@ class Disc {
           seen_vertex_[v] = round_;
           points_.push_back(m.points[v]);
         }
+        if (m.is_feature[h]) continue;
         const std::uint32_t across = m.twin[h] / 3;
         if (input_.is_back(across) || input_.patch[across] != input_.patch[face] || seen_[across] == round_) continue;
         seen_[across] = round_;
