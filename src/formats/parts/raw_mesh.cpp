@@ -3,7 +3,7 @@
 #include "base/geometry/predicates.h"
 #include "base/mesh/adjacency.h"
 #include "base/mesh/face_table.h"
-#include "base/mesh/labels.h"
+#include "base/mesh/label_at.h"
 #include "base/mesh/renumber.h"
 #include "formats/parts/boundary.h"
 #include "formats/parts/mesh_parts.h"

@@ -5,7 +5,7 @@
 #include "base/mesh/complex.h"
 #include "pipeline/stages/methods.h"
 #include "sizing/field/change_size_field.h"
-#include "sizing/prediction/expected_tets.h"
+#include "sizing/field/expected_tets.h"
 #include "sizing/sources/curvature.h"
 #include "sizing/sources/model_extent.h"
 #include "surface/remeshing/keep_volumes.h"

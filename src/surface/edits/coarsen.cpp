@@ -1,7 +1,7 @@
 #include "surface/edits/coarsen.h"
 
-#include "surface/edits/blocks.h"
 #include "surface/edits/star_collapse.h"
+#include "surface/edits/surface_blocks.h"
 
 #include <algorithm>
 #include <span>

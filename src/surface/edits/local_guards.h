@@ -1,6 +1,6 @@
 #pragma once
 
-#include "surface/edits/blocks.h"
+#include "surface/edits/surface_blocks.h"
 #include "surface/edits/working_mesh.h"
 
 namespace octafront::remeshing {

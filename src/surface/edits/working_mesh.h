@@ -5,7 +5,7 @@
 // closed manifold exists at every moment.
 
 #include "base/core/shared_value.h"
-#include "surface/ground/walk.h"
+#include "surface/edits/walk.h"
 
 namespace octafront::remeshing {
 

@@ -3,7 +3,7 @@
 #include <octafront/run_context.h>
 
 #include "surface/edits/working_mesh.h"
-#include "surface/front/front.h"
+#include "surface/front/surface_front.h"
 
 namespace octafront::remeshing {
 

@@ -7,7 +7,7 @@
 #include <octafront/size_field.h>
 
 #include "base/mesh/periodic_cell.h"
-#include "surface/ground/walk.h"
+#include "surface/edits/walk.h"
 
 #include <vector>
 

@@ -3,7 +3,7 @@
 #include <octafront/size_field.h>
 
 #include "base/core/stage.h"
-#include "sizing/search/budget.h"
+#include "sizing/sources/budget.h"
 
 #include <cmath>
 #include <cstddef>

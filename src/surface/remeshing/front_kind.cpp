@@ -2,7 +2,7 @@
 
 #include "base/core/parallel.h"
 #include "base/geometry/measures.h"
-#include "surface/folds/mend_folds.h"
+#include "surface/remeshing/mend_folds.h"
 
 #include <algorithm>
 

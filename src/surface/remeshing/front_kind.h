@@ -3,11 +3,11 @@
 // The steps of a round in which single surfaces and complexes differ. One object is chosen before the first round.
 
 #include "base/mesh/features.h"
-#include "surface/check/surface_check.h"
+#include "surface/lines/narrow_strips.h"
+#include "surface/lines/seams.h"
 #include "surface/remeshing/outcome.h"
 #include "surface/remeshing/round_sizes.h"
-#include "surface/seams/seams.h"
-#include "surface/sizes/narrow_strips.h"
+#include "surface/remeshing/surface_check.h"
 
 #include <memory>
 #include <optional>

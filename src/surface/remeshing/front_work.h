@@ -10,10 +10,10 @@
 #include "base/mesh/periodic_cell.h"
 #include "surface/edits/coarsen.h"
 #include "surface/front/insertion.h"
+#include "surface/front/shaping.h"
 #include "surface/lines/curves.h"
 #include "surface/remeshing/element_budget.h"
 #include "surface/remeshing/remesh.h"
-#include "surface/shaping/shaping.h"
 
 #include <span>
 #include <vector>

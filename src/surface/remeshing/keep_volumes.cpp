@@ -3,8 +3,8 @@
 #include "base/core/conjugate_gradients.h"
 #include "base/core/groups.h"
 #include "base/mesh/complex.h"
-#include "surface/check/surface_check.h"
-#include "surface/ground/crossings.h"
+#include "surface/edits/crossings.h"
+#include "surface/remeshing/surface_check.h"
 
 #include <algorithm>
 #include <cmath>

@@ -1,7 +1,7 @@
 #include "surface/remeshing/outcome.h"
 
-#include "surface/ground/crossings.h"
-#include "surface/seams/seams.h"
+#include "surface/edits/crossings.h"
+#include "surface/lines/seams.h"
 
 #include <algorithm>
 #include <utility>

@@ -1,7 +1,7 @@
 #include "surface/remeshing/round_sizes.h"
 
 #include "base/geometry/measures.h"
-#include "surface/sizes/thinned.h"
+#include "surface/lines/thinned.h"
 
 #include <algorithm>
 #include <utility>

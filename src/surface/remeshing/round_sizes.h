@@ -4,7 +4,7 @@
 
 #include "base/core/function_ref.h"
 #include "sizing/field/change_size_field.h"
-#include "surface/ground/kept_places.h"
+#include "surface/edits/kept_places.h"
 
 #include <optional>
 #include <vector>

@@ -1,7 +1,7 @@
 #include "surface/edits/local_guards.h"
 
 #include "base/geometry/measures.h"
-#include "surface/ground/walk.h"
+#include "surface/edits/walk.h"
 
 #include <gtest/gtest.h>
 

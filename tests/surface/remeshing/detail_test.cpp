@@ -4,12 +4,12 @@
 
 #include "base/geometry/measures.h"
 #include "support/named_surfaces.h"
-#include "surface/check/surface_check.h"
-#include "surface/folds/unfold.h"
-#include "surface/ground/crossings.h"
-#include "surface/ground/deviation.h"
-#include "surface/ground/kept_places.h"
+#include "surface/edits/crossings.h"
+#include "surface/edits/deviation.h"
+#include "surface/edits/kept_places.h"
 #include "surface/remeshing/remesh.h"
+#include "surface/remeshing/surface_check.h"
+#include "surface/remeshing/unfold.h"
 
 #include <algorithm>
 #include <numbers>

@@ -7,15 +7,15 @@
 #include "base/geometry/measures.h"
 #include "base/mesh/feature_patches.h"
 #include "base/mesh/half_edge_mesh.h"
-#include "sizing/search/make_size_field.h"
+#include "sizing/sources/make_size_field.h"
 #include "support/faceted.h"
 #include "support/named_surfaces.h"
 #include "support/random.h"
 #include "surface/edits/coarsen.h"
-#include "surface/front/front.h"
+#include "surface/edits/crossings.h"
 #include "surface/front/insertion.h"
-#include "surface/ground/crossings.h"
-#include "surface/shaping/shaping.h"
+#include "surface/front/shaping.h"
+#include "surface/front/surface_front.h"
 
 #include <algorithm>
 #include <map>
