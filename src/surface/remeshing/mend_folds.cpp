@@ -118,6 +118,45 @@ std::vector<std::uint8_t> with_small_rims(const WorkingMesh& mesh, const FoldLim
   return fixed;
 }
 
+/// Whether a new edge would run between two vertices on seams: it may be there in another part.
+bool joins_seams(const WorkingMesh& mesh, HalfEdge h) {
+  const VertexIndex w = mesh.end(h), a = mesh.apex(h), b = mesh.apex(mesh.twin[h]);
+  bool found = false;
+  mesh.for_each_outgoing(mesh.start[h], [&](HalfEdge o) {
+    const VertexIndex v = mesh.end(o);
+    found = found || (v != w && v != a && v != b && mesh.is_sewn(v));
+  });
+  return found;
+}
+
+/// The point of what is stood for that is nearest to p; of a complex, if there is one of the triangle's own patch no
+/// farther than it may move: beside seams others may be nearer.
+TriangleTree::Nearest nearest_in_patch(const FoldLimits& limits, Vec3 p, std::uint32_t patch, double reach) {
+  const TriangleTree::Nearest any = limits.onto->nearest(p);
+  if (limits.patch_of == nullptr || (*limits.patch_of)[any.triangle] == patch) return any;
+  TriangleTree::Nearest best{{}, kNone, reach * reach};
+  const Vec3 r{reach, reach, reach};
+  limits.onto->for_each_box_near({p - r, p + r}, [&](std::uint32_t face, const TriangleCorners& c) {
+    if ((*limits.patch_of)[face] != patch) return true;
+    const Vec3 q = closest_point_on_triangle(p, c[0], c[1], c[2]);
+    const double d = squared_distance(p, q);
+    if (d < best.squared_distance) best = {q, face, d};
+    return true;
+  });
+  return best;
+}
+
+bool shapes_are_fair(const std::vector<TriangleCorners>& before, const std::vector<TriangleCorners>& after,
+                     double least_shape) {
+  const auto worst = [](const std::vector<TriangleCorners>& triangles) {
+    double least = 1;
+    for (const auto& [a, b, c] : triangles) least = std::min(least, triangle_radius_ratio(a, b, c));
+    return least;
+  };
+  const double limit = least_shape > 0 ? least_shape : kLeastShape;
+  return worst(after) >= std::min(limit, worst(before));
+}
+
 class FoldMender {
  public:
   FoldMender(WorkingMesh& mesh, const FoldLimits& limits)
@@ -228,36 +267,9 @@ class FoldMender {
   void consider_collapse(HalfEdge h) {
     const VertexIndex u = mesh_.start[h], w = mesh_.end(h);
     if (distance(mesh_.points[u], mesh_.points[w]) > kLongestToCollapse * limit_ || !edits_.may_collapse(h)) return;
-    if (mesh_.is_sewn(w) && joins_seams(h)) return;
+    if (mesh_.is_sewn(w) && joins_seams(mesh_, h)) return;
     gather_star(u, mesh_.points[w], w);
     judge({Change::Kind::kCollapse, h}, w);
-  }
-
-  /// Whether a new edge would run between two vertices on seams: it may be there in another part.
-  bool joins_seams(HalfEdge h) const {
-    const VertexIndex w = mesh_.end(h), a = mesh_.apex(h), b = mesh_.apex(mesh_.twin[h]);
-    bool found = false;
-    mesh_.for_each_outgoing(mesh_.start[h], [&](HalfEdge o) {
-      const VertexIndex v = mesh_.end(o);
-      found = found || (v != w && v != a && v != b && mesh_.is_sewn(v));
-    });
-    return found;
-  }
-  /// The point of what is stood for that is nearest to p; of a complex, if there is one of the triangle's own patch no
-  /// farther than it may move: beside seams others may be nearer.
-  TriangleTree::Nearest nearest_of_patch(Vec3 p, std::uint32_t t) const {
-    const TriangleTree::Nearest any = limits_.onto->nearest(p);
-    if (limits_.patch_of == nullptr || (*limits_.patch_of)[any.triangle] == mesh_.patch[t]) return any;
-    TriangleTree::Nearest best{{}, kNone, limit_ * limit_};
-    const Vec3 reach{limit_, limit_, limit_};
-    limits_.onto->for_each_box_near({p - reach, p + reach}, [&](std::uint32_t face, const TriangleCorners& c) {
-      if ((*limits_.patch_of)[face] != mesh_.patch[t]) return true;
-      const Vec3 q = closest_point_on_triangle(p, c[0], c[1], c[2]);
-      const double d = squared_distance(p, q);
-      if (d < best.squared_distance) best = {q, face, d};
-      return true;
-    });
-    return best;
   }
 
   void consider_moves(HalfEdge at) {
@@ -277,7 +289,7 @@ class FoldMender {
   void consider_move(HalfEdge at, Vec3 to) {
     Change change{Change::Kind::kMove, at, to};
     if (limits_.onto) {
-      const TriangleTree::Nearest nearest = nearest_of_patch(to, at / 3);
+      const TriangleTree::Nearest nearest = nearest_in_patch(limits_, to, mesh_.patch[at / 3], limit_);
       if (nearest.triangle == kNone) return;
       change.place = nearest.point;
       change.face = nearest.triangle;
@@ -291,7 +303,8 @@ class FoldMender {
     if (mesh_.is_feature[h] || !limits_.onto) return;
     const HalfEdge g = mesh_.twin[h];
     const VertexIndex a = mesh_.start[h], b = mesh_.start[g], c = mesh_.apex(h), d = mesh_.apex(g);
-    const TriangleTree::Nearest middle = nearest_of_patch((mesh_.points[a] + mesh_.points[b]) * 0.5, h / 3);
+    const TriangleTree::Nearest middle =
+        nearest_in_patch(limits_, (mesh_.points[a] + mesh_.points[b]) * 0.5, mesh_.patch[h / 3], limit_);
     if (middle.triangle == kNone) return;
     const auto x = static_cast<VertexIndex>(mesh_.points.size());
     old_.assign({h / 3, g / 3});
@@ -331,7 +344,7 @@ class FoldMender {
     new_corners_.clear();
     for (const std::uint32_t t : old_) old_corners_.push_back(corners(t));
     for (const IdTriangle& t : new_) new_corners_.push_back(t.corners);
-    if (!shapes_are_fair()) return;
+    if (!shapes_are_fair(old_corners_, new_corners_, limits_.least_shape)) return;
     change.move = farthest(old_corners_, new_corners_, limit_);
     if (change.move > limit_) return;
     change.move = std::max(change.move, farthest(new_corners_, old_corners_, limit_));
@@ -401,16 +414,6 @@ class FoldMender {
             {renamed(mesh_.start[g]), renamed(mesh_.end(g)), mesh_.area_vector(g / 3), true, is_kept_line(g)});
       }
     }
-  }
-
-  bool shapes_are_fair() const {
-    const auto worst = [](const std::vector<TriangleCorners>& triangles) {
-      double least = 1;
-      for (const auto& [a, b, c] : triangles) least = std::min(least, triangle_radius_ratio(a, b, c));
-      return least;
-    };
-    const double limit = limits_.least_shape > 0 ? limits_.least_shape : kLeastShape;
-    return worst(new_corners_) >= std::min(limit, worst(old_corners_));
   }
 
   bool still_crosses(std::uint32_t t) {
