@@ -217,7 +217,7 @@ std::vector<double> smooth_detail(Examined& found, Run& run) {
   const double tolerance = detail_tolerance(surface, run.options, kUnfolded);
   if (tolerance == 0) return {};
   return run.stage("detail", [&](const Stage& stage) {
-    auto unfolded = remeshing::unfold(surface, found.edges, tolerance, stage.context());
+    auto unfolded = surface::unfold(surface, found.edges, tolerance, stage.context());
     stage.count("folds mended", unfolded ? static_cast<double>(unfolded->mended.operations) : 0);
     if (!unfolded) return std::vector<double>{};
     const double change = change_of_volume(enclosed_volume(unfolded->surface), run.report.input_volume);

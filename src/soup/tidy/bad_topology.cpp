@@ -7,7 +7,7 @@
 #include <tuple>
 #include <utility>
 
-namespace octafront::defects {
+namespace octafront::tidy {
 namespace {
 
 std::uint32_t corner_at(const std::vector<Triangle>& triangles, std::uint32_t face, VertexIndex v) {
@@ -178,4 +178,4 @@ void find_degenerate_faces(const RepairedSurface& repaired, SurfaceDefects& defe
   }
 }
 
-}  // namespace octafront::defects
+}  // namespace octafront::tidy

@@ -9,7 +9,7 @@
 
 #include <vector>
 
-namespace octafront::defects {
+namespace octafront::tidy {
 
 /// Open, non-manifold and misoriented edges.
 void find_bad_edges(const RepairedSurface& repaired, const EdgeTable& table, SurfaceDefects& defects);
@@ -51,4 +51,4 @@ class FirstPlaces {
   SurfaceDefects::Kind& kind_;
 };
 
-}  // namespace octafront::defects
+}  // namespace octafront::tidy

@@ -74,7 +74,7 @@ std::string SurfaceDefects::describe() const {
       counted(non_manifold_vertices.count, "vertex", "vertices") + " where parts touch in a single point", "vertex at",
       "`octafront repair` draws them apart.");
   octafront::describe(text, self_intersections,
-                      (self_intersections.count >= defects::kMostPairs ? "at least " : "") +
+                      (self_intersections.count >= tidy::kMostPairs ? "at least " : "") +
                           counted(self_intersections.count, "pair") + " of faces that cut or touch each other",
                       "near",
                       "`octafront repair` unites parts that overlap, and removes what lies inside; parts with names "
@@ -93,8 +93,8 @@ std::string SurfaceDefects::describe() const {
   return text;
 }
 
-SurfaceDefects defects::find_defects_but_crossings(const RepairedSurface& repaired, const EdgeTable& table,
-                                                   const RunContext& context) {
+SurfaceDefects tidy::find_defects_but_crossings(const RepairedSurface& repaired, const EdgeTable& table,
+                                                const RunContext& context) {
   SurfaceDefects found;
   found.no_faces = repaired.surface.triangles.empty();
   parallel_invoke([&] { find_bad_vertices(repaired, table, found); },
@@ -106,8 +106,7 @@ SurfaceDefects defects::find_defects_but_crossings(const RepairedSurface& repair
   return found;
 }
 
-SurfaceDefects defects::find_defects(const RepairedSurface& repaired, const EdgeTable& table,
-                                     const RunContext& context) {
+SurfaceDefects tidy::find_defects(const RepairedSurface& repaired, const EdgeTable& table, const RunContext& context) {
   if (!repaired.surface.sides.empty()) return find_complex_defects(repaired, table, context);
   SurfaceDefects found = find_defects_but_crossings(repaired, table, context);
   find_self_intersections(repaired, table, context, found);
@@ -117,7 +116,7 @@ SurfaceDefects defects::find_defects(const RepairedSurface& repaired, const Edge
 SurfaceDefects find_defects(const RepairedSurface& repaired, const RunContext& context) {
   context.check();
   const SurfaceMesh& mesh = repaired.surface;
-  return defects::find_defects(repaired, make_edge_table(mesh.points.size(), mesh.triangles, context), context);
+  return tidy::find_defects(repaired, make_edge_table(mesh.points.size(), mesh.triangles, context), context);
 }
 
 }  // namespace octafront

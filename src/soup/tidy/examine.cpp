@@ -13,7 +13,7 @@ Examined examine_surface(const SurfaceMesh& soup, bool is_clean, const RunContex
   const SurfaceMesh& surface = result.repaired.surface;
   result.edges = draft.known_edges ? std::move(*draft.known_edges)
                                    : make_edge_table(surface.points.size(), surface.triangles, context);
-  if (!is_clean) result.defects = defects::find_defects(result.repaired, result.edges, context);
+  if (!is_clean) result.defects = tidy::find_defects(result.repaired, result.edges, context);
   return result;
 }
 

@@ -6,7 +6,7 @@
 #include <optional>
 #include <utility>
 
-namespace octafront::defects {
+namespace octafront::tidy {
 namespace {
 
 constexpr std::size_t kShown = 10;
@@ -88,4 +88,4 @@ void find_self_intersections(const RepairedSurface& repaired, const EdgeTable& t
   defects.self_intersections.count = pairs.size();
 }
 
-}  // namespace octafront::defects
+}  // namespace octafront::tidy

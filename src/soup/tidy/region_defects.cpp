@@ -13,7 +13,7 @@
 #include <set>
 #include <utility>
 
-namespace octafront::defects {
+namespace octafront::tidy {
 
 namespace {
 
@@ -130,4 +130,4 @@ SurfaceDefects find_region_defects(const RepairedSurface& repaired, const EdgeTa
   return found;
 }
 
-}  // namespace octafront::defects
+}  // namespace octafront::tidy

@@ -7,7 +7,7 @@
 #include <span>
 #include <utility>
 
-namespace octafront::remeshing {
+namespace octafront::surface {
 
 namespace {
 
@@ -141,4 +141,4 @@ void remove_input_vertices(WorkingMesh& mesh, const SizeField& sizes, const RunC
   Coarsener(mesh, sizes, context, counts).run();
 }
 
-}  // namespace octafront::remeshing
+}  // namespace octafront::surface

@@ -5,7 +5,7 @@
 
 #include <algorithm>
 
-namespace octafront::remeshing {
+namespace octafront::surface {
 
 std::vector<std::array<std::uint32_t, 2>> find_crossings(const SurfaceMesh& surface) {
   std::vector<std::array<std::uint32_t, 2>> pairs;
@@ -25,4 +25,4 @@ std::vector<std::array<std::uint32_t, 2>> find_crossings(const SurfaceMesh& surf
   return pairs;
 }
 
-}  // namespace octafront::remeshing
+}  // namespace octafront::surface

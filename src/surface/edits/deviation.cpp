@@ -10,7 +10,7 @@
 #include <limits>
 #include <utility>
 
-namespace octafront::remeshing {
+namespace octafront::surface {
 
 namespace {
 
@@ -405,4 +405,4 @@ std::vector<FarPlace> places_under(const std::vector<std::uint32_t>& triangles, 
   return places;
 }
 
-}  // namespace octafront::remeshing
+}  // namespace octafront::surface

@@ -9,7 +9,7 @@
 #include <span>
 #include <vector>
 
-namespace octafront::remeshing {
+namespace octafront::surface {
 
 /// Where two surfaces lie too far apart.
 struct FarPlace {
@@ -76,4 +76,4 @@ class DeviationWatch {
 std::vector<FarPlace> places_under(const std::vector<std::uint32_t>& triangles, const SurfaceMesh& made,
                                    const TriangleTree& input_tree);
 
-}  // namespace octafront::remeshing
+}  // namespace octafront::surface

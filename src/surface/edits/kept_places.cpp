@@ -4,7 +4,7 @@
 
 #include <algorithm>
 
-namespace octafront::remeshing {
+namespace octafront::surface {
 
 std::vector<std::uint8_t> mark_kept_places(InputSurface& input, const TriangleTree& tree,
                                            const std::vector<KeptPlace>& balls) {
@@ -24,4 +24,4 @@ std::vector<std::uint8_t> mark_kept_places(InputSurface& input, const TriangleTr
   return is_fixed;
 }
 
-}  // namespace octafront::remeshing
+}  // namespace octafront::surface

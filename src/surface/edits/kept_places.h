@@ -5,7 +5,7 @@
 
 #include <vector>
 
-namespace octafront::remeshing {
+namespace octafront::surface {
 
 /// A ball in which the input's own triangles are to stay.
 struct KeptPlace {
@@ -20,4 +20,4 @@ struct KeptPlace {
 std::vector<std::uint8_t> mark_kept_places(InputSurface& input, const TriangleTree& tree,
                                            const std::vector<KeptPlace>& balls);
 
-}  // namespace octafront::remeshing
+}  // namespace octafront::surface

@@ -4,7 +4,7 @@
 
 #include "base/core/parallel.h"
 
-namespace octafront::remeshing {
+namespace octafront::surface {
 
 namespace {
 
@@ -42,4 +42,4 @@ std::vector<std::uint32_t> source_triangles(const InputSurface& input, const Kno
   return source;
 }
 
-}  // namespace octafront::remeshing
+}  // namespace octafront::surface

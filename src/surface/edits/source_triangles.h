@@ -2,7 +2,7 @@
 
 #include "surface/edits/walk.h"
 
-namespace octafront::remeshing {
+namespace octafront::surface {
 
 /// Per triangle of `surface` the input triangle nearest to its centroid. `face` is per vertex an input face that it
 /// lies in, `is_inner` whether it lies off all features: from such a vertex the input triangle is found by a short
@@ -11,4 +11,4 @@ std::vector<std::uint32_t> source_triangles(const InputSurface& input, const Kno
                                             const SurfaceMesh& surface, const std::vector<std::uint32_t>& face,
                                             const std::vector<std::uint8_t>& is_inner);
 
-}  // namespace octafront::remeshing
+}  // namespace octafront::surface

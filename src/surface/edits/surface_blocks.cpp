@@ -2,7 +2,7 @@
 
 #include "base/core/validate.h"
 
-namespace octafront::remeshing {
+namespace octafront::surface {
 
 namespace {
 
@@ -35,4 +35,4 @@ bool SurfaceBlocks::Block::has_both(HalfEdge h) const {
   return has(m.start[h]) && has(m.end(h)) && has(m.apex(h)) && has(m.apex(m.twin[h]));
 }
 
-}  // namespace octafront::remeshing
+}  // namespace octafront::surface

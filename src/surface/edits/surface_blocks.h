@@ -8,7 +8,7 @@
 #include <array>
 #include <vector>
 
-namespace octafront::remeshing {
+namespace octafront::surface {
 
 /// Vertices by blocks: cells of space. What changes triangles of whose corners all are in one block neither changes nor
 /// sees what is changed in another. In the last stage one block has all vertices.
@@ -57,4 +57,4 @@ class SurfaceBlocks {
   int first_stage_ = 0;  ///< the last if there is one cell only
 };
 
-}  // namespace octafront::remeshing
+}  // namespace octafront::surface

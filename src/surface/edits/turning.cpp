@@ -8,7 +8,7 @@
 #include <algorithm>
 #include <numbers>
 
-namespace octafront::remeshing {
+namespace octafront::surface {
 
 namespace {
 
@@ -43,4 +43,4 @@ std::vector<PointSize> turned_places(double degrees, const SurfaceMesh& made, co
   return places;
 }
 
-}  // namespace octafront::remeshing
+}  // namespace octafront::surface

@@ -6,7 +6,7 @@
 
 #include <vector>
 
-namespace octafront::remeshing {
+namespace octafront::surface {
 
 /// Places where triangles of `made` turn by more than `degrees` against the input's surface, which is looked at where
 /// their corners inside patches and their centroids lie, and the sizes that would do. `face` is an input face of each
@@ -16,4 +16,4 @@ std::vector<PointSize> turned_places(double degrees, const SurfaceMesh& made, co
                                      const std::vector<std::uint8_t>& is_inner,
                                      const std::vector<std::uint32_t>& source);
 
-}  // namespace octafront::remeshing
+}  // namespace octafront::surface

@@ -4,7 +4,7 @@
 
 #include <algorithm>
 
-namespace octafront::remeshing {
+namespace octafront::surface {
 
 namespace {
 
@@ -166,4 +166,4 @@ WalkEnd walk_from_vertex(const InputSurface& input, HalfEdge corner, Vec3 direct
   return march(section, section.origin, opposite, a, b, result);
 }
 
-}  // namespace octafront::remeshing
+}  // namespace octafront::surface

@@ -7,7 +7,7 @@
 #include "base/mesh/half_edge_mesh.h"
 #include "base/mesh/known_surface.h"
 
-namespace octafront::remeshing {
+namespace octafront::surface {
 
 /// The input surface, as something to walk on.
 struct InputSurface {
@@ -60,4 +60,4 @@ WalkEnd walk(const InputSurface& input, SurfacePoint from, Vec3 direction, Vec3 
 WalkEnd walk_from_vertex(const InputSurface& input, HalfEdge corner, Vec3 direction, double distance,
                          SurfacePoint& result);
 
-}  // namespace octafront::remeshing
+}  // namespace octafront::surface

@@ -6,7 +6,7 @@
 #include <algorithm>
 #include <optional>
 
-namespace octafront::remeshing {
+namespace octafront::surface {
 
 namespace {
 
@@ -279,4 +279,4 @@ void adjust_lengths(WorkingMesh& mesh, const InputSurface& input, CurvePoints& c
   LengthAdjuster(mesh, input, curve_points, sizes, counts).run();
 }
 
-}  // namespace octafront::remeshing
+}  // namespace octafront::surface

@@ -5,7 +5,7 @@
 #include "surface/front/shaping.h"
 #include "surface/lines/curve_points.h"
 
-namespace octafront::remeshing {
+namespace octafront::surface {
 
 /// Mends what the front left too long, too short or too flat: splits long edges inside patches, collapses short ones,
 /// and turns edges, moves, adds or removes vertices of bad triangles where that makes the worst triangle around better.
@@ -15,4 +15,4 @@ void adjust_lengths(WorkingMesh& mesh, const InputSurface& input, CurvePoints& c
 void mend_triangles(WorkingMesh& mesh, const InputSurface& input, CurvePoints& curve_points, const SizeField& sizes,
                     ImproveCounts& counts);
 
-}  // namespace octafront::remeshing
+}  // namespace octafront::surface

@@ -13,7 +13,7 @@
 #include <span>
 #include <utility>
 
-namespace octafront::remeshing {
+namespace octafront::surface {
 
 namespace {
 
@@ -279,4 +279,4 @@ void improve_surface(WorkingMesh& mesh, const InputSurface& input, const std::ve
   SurfaceImprover(mesh, input, curves, sizes, context, counts).run();
 }
 
-}  // namespace octafront::remeshing
+}  // namespace octafront::surface

@@ -9,7 +9,7 @@
 #include "surface/edits/working_mesh.h"
 #include "surface/lines/curves.h"
 
-namespace octafront::remeshing {
+namespace octafront::surface {
 
 struct ImproveCounts {
   std::uint64_t flips = 0, moves = 0, splits = 0, collapses = 0;
@@ -21,4 +21,4 @@ struct ImproveCounts {
 void improve_surface(WorkingMesh& mesh, const InputSurface& input, const std::vector<Curve>& curves,
                      const SizeField& sizes, const RunContext& context, ImproveCounts& counts);
 
-}  // namespace octafront::remeshing
+}  // namespace octafront::surface

@@ -11,7 +11,7 @@
 #include <numbers>
 #include <numeric>
 
-namespace octafront::remeshing {
+namespace octafront::surface {
 
 namespace {
 
@@ -391,4 +391,4 @@ FrontPoints place_points(const InputSurface& input, const std::vector<Curve>& cu
   return best;
 }
 
-}  // namespace octafront::remeshing
+}  // namespace octafront::surface

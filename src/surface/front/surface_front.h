@@ -10,7 +10,7 @@
 
 #include <vector>
 
-namespace octafront::remeshing {
+namespace octafront::surface {
 
 /// A point that the front placed on the input surface.
 struct FrontPoint {
@@ -40,4 +40,4 @@ struct FrontPoints {
 FrontPoints place_points(const InputSurface& input, const std::vector<Curve>& curves, const SizeField& sizes,
                          const RunContext& context);
 
-}  // namespace octafront::remeshing
+}  // namespace octafront::surface

@@ -9,7 +9,7 @@
 #include <map>
 #include <optional>
 
-namespace octafront::remeshing {
+namespace octafront::surface {
 
 namespace {
 
@@ -143,4 +143,4 @@ SizeField fitted_to_corners(const InputSurface& input, const SeamedSurface& seam
                    {.gradation = kSteepAroundCorners});
 }
 
-}  // namespace octafront::remeshing
+}  // namespace octafront::surface

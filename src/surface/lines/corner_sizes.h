@@ -5,7 +5,7 @@
 #include <cstdint>
 #include <vector>
 
-namespace octafront::remeshing {
+namespace octafront::surface {
 
 /// The sizes, made smaller where the curves of a complex ask for that. Around a corner the size is at most the distance
 /// to the next corner, and to the nearest curve that does not end at this corner; on a closed curve it is at most a
@@ -15,4 +15,4 @@ namespace octafront::remeshing {
 SizeField fitted_to_corners(const InputSurface& input, const SeamedSurface& seamed, std::vector<std::uint8_t> is_fixed,
                             const SizeField& sizes, double least, const RunContext& context);
 
-}  // namespace octafront::remeshing
+}  // namespace octafront::surface

@@ -11,7 +11,7 @@
 #include <cmath>
 #include <functional>
 
-namespace octafront::remeshing {
+namespace octafront::surface {
 
 namespace {
 
@@ -236,4 +236,4 @@ std::vector<PointSize> sizes_by_flatness(const InputSurface& input, const std::v
   return smallest_ones(std::move(places));
 }
 
-}  // namespace octafront::remeshing
+}  // namespace octafront::surface

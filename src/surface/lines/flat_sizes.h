@@ -8,7 +8,7 @@
 
 #include <vector>
 
-namespace octafront::remeshing {
+namespace octafront::surface {
 
 /// Places where triangles of the wanted size would deviate from the input by more than `tolerance`, and the size by
 /// which they would not: of triangles no larger than the part of the patch around the place that stays between two
@@ -19,4 +19,4 @@ namespace octafront::remeshing {
 std::vector<PointSize> sizes_by_flatness(const InputSurface& input, const std::vector<Curve>& curves,
                                          const SizeField& sizes, double tolerance, const RunContext& context);
 
-}  // namespace octafront::remeshing
+}  // namespace octafront::surface

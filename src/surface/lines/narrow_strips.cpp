@@ -6,7 +6,7 @@
 
 #include <algorithm>
 
-namespace octafront::remeshing {
+namespace octafront::surface {
 
 namespace {
 
@@ -118,4 +118,4 @@ std::optional<SizeField> fitted_to_strips(const InputSurface& input, const SizeF
   return capped_at(sizes, places, context, {.gradation = rules.gradation});
 }
 
-}  // namespace octafront::remeshing
+}  // namespace octafront::surface

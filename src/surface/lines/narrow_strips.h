@@ -11,7 +11,7 @@
 
 #include <optional>
 
-namespace octafront::remeshing {
+namespace octafront::surface {
 
 /// What a strip is, and what becomes of sizes there.
 struct StripRules {
@@ -37,4 +37,4 @@ inline constexpr StripRules kStripsOfWalls{
 std::optional<SizeField> fitted_to_strips(const InputSurface& input, const SizeField& sizes, const StripRules& rules,
                                           const RunContext& context);
 
-}  // namespace octafront::remeshing
+}  // namespace octafront::surface

@@ -9,7 +9,7 @@
 #include <cstdint>
 #include <vector>
 
-namespace octafront::remeshing {
+namespace octafront::surface {
 
 struct NoData {};
 
@@ -185,4 +185,4 @@ class PointGrid {
   double largest_ = 0;
 };
 
-}  // namespace octafront::remeshing
+}  // namespace octafront::surface

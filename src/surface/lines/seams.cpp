@@ -14,7 +14,7 @@
 #include <unordered_map>
 #include <utility>
 
-namespace octafront::remeshing {
+namespace octafront::surface {
 
 namespace {
 
@@ -182,7 +182,7 @@ class Cutter {
     m.is_feature.assign(m.start.size(), 0);
     m.outgoing.assign(m.points.size(), kNone);
     for (HalfEdge h = 0; h < m.start.size(); ++h) m.outgoing[m.start[h]] = h;
-    remeshing::find_normals(input);
+    surface::find_normals(input);
     set_features(input, {});
   }
 
@@ -659,4 +659,4 @@ std::vector<std::uint32_t> front_triangles(const WorkingMesh& mesh) {
   return alive;
 }
 
-}  // namespace octafront::remeshing
+}  // namespace octafront::surface

@@ -20,7 +20,7 @@
 #include <cstdint>
 #include <vector>
 
-namespace octafront::remeshing {
+namespace octafront::surface {
 
 /// A complex cut open. Triangle t of the complex is face t of `input`; backs follow.
 struct SeamedSurface {
@@ -76,4 +76,4 @@ std::vector<VertexIndex> sewn_vertices(const WorkingMesh& mesh);
 /// The living triangles that are no backs.
 std::vector<std::uint32_t> front_triangles(const WorkingMesh& mesh);
 
-}  // namespace octafront::remeshing
+}  // namespace octafront::surface

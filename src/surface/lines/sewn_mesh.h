@@ -6,7 +6,7 @@
 
 #include <vector>
 
-namespace octafront::remeshing {
+namespace octafront::surface {
 
 /// The working mesh as LiveTriangles looks at it: sewn, without backs. Seams must not change while it is used.
 class SewnMesh {
@@ -33,4 +33,4 @@ class SewnMesh {
   std::vector<VertexIndex> sewn_;
 };
 
-}  // namespace octafront::remeshing
+}  // namespace octafront::surface

@@ -5,7 +5,7 @@
 #include <algorithm>
 #include <tuple>
 
-namespace octafront::remeshing {
+namespace octafront::surface {
 
 std::vector<Vec3> thinned(const SizeField& sizes, const std::vector<Vec3>& places) {
   if (places.empty()) return {};
@@ -37,4 +37,4 @@ std::vector<PointSize> smallest_ones(std::vector<PointSize> places) {
   return places;
 }
 
-}  // namespace octafront::remeshing
+}  // namespace octafront::surface

@@ -5,7 +5,7 @@
 
 #include <vector>
 
-namespace octafront::remeshing {
+namespace octafront::surface {
 
 /// Of places within half a size of each other the first one.
 std::vector<Vec3> thinned(const SizeField& sizes, const std::vector<Vec3>& places);
@@ -13,4 +13,4 @@ std::vector<Vec3> thinned(const SizeField& sizes, const std::vector<Vec3>& place
 /// Of places within their size of each other that of the smallest size, by size.
 std::vector<PointSize> smallest_ones(std::vector<PointSize> places);
 
-}  // namespace octafront::remeshing
+}  // namespace octafront::surface

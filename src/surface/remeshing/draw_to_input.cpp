@@ -7,7 +7,7 @@
 #include <algorithm>
 #include <array>
 
-namespace octafront::remeshing {
+namespace octafront::surface {
 
 namespace {
 
@@ -197,4 +197,4 @@ std::uint64_t draw_to_input(WorkingMesh& mesh, const InputSurface& input, const 
   return Approacher(mesh, input, tree, is_fixed, least_shape).run(places);
 }
 
-}  // namespace octafront::remeshing
+}  // namespace octafront::surface

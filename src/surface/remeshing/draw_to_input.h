@@ -5,7 +5,7 @@
 
 #include <span>
 
-namespace octafront::remeshing {
+namespace octafront::surface {
 
 /// No new triangle is worse than this 2r/R, unless one was: what is mended for its shape deviates again.
 inline constexpr double kFairShape = 0.35;
@@ -22,4 +22,4 @@ std::uint64_t draw_to_input(WorkingMesh& mesh, const InputSurface& input, const 
                             const std::vector<std::uint8_t>& is_fixed, std::span<const FarPlace> places,
                             double least_shape = kFairShape);
 
-}  // namespace octafront::remeshing
+}  // namespace octafront::surface

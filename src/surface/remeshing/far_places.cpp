@@ -7,7 +7,7 @@
 #include <algorithm>
 #include <cmath>
 
-namespace octafront::remeshing {
+namespace octafront::surface {
 
 namespace {
 
@@ -45,4 +45,4 @@ std::vector<PointSize> sizes_against(const std::vector<FarPlace>& places, double
   return smallest_ones(std::move(wanted));
 }
 
-}  // namespace octafront::remeshing
+}  // namespace octafront::surface

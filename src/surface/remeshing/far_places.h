@@ -7,7 +7,7 @@
 
 #include <vector>
 
-namespace octafront::remeshing {
+namespace octafront::surface {
 
 /// From this part of the bound on deviation on nobody shall move triangles later: sliding vertices deviate by a fifth
 /// more.
@@ -26,4 +26,4 @@ double farthest_of(const std::vector<FarPlace>& places);
 /// the square of their length. Of places near to each other that of the smallest size.
 std::vector<PointSize> sizes_against(const std::vector<FarPlace>& places, double tolerance, const SizeField& sizes);
 
-}  // namespace octafront::remeshing
+}  // namespace octafront::surface

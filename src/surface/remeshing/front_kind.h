@@ -14,7 +14,7 @@
 #include <string>
 #include <vector>
 
-namespace octafront::remeshing {
+namespace octafront::surface {
 
 /// Sizes around crossing triangles become this part of what they were ...
 inline constexpr double kCap = 0.6;
@@ -95,4 +95,4 @@ inline constexpr std::int64_t kFewCrossing = 300;
 /// The longest edge of a triangle.
 double longest_edge_of(const TriangleCorners& t);
 
-}  // namespace octafront::remeshing
+}  // namespace octafront::surface

@@ -18,7 +18,7 @@
 #include <span>
 #include <vector>
 
-namespace octafront::remeshing {
+namespace octafront::surface {
 
 struct FrontCounts {
   static constexpr std::uint64_t kJudgedAnyway = 20'000, kJudgedPerTriangle = 2;
@@ -97,4 +97,4 @@ struct Draft {
   bool is_clear = false;  ///< it is known that nothing crosses
 };
 
-}  // namespace octafront::remeshing
+}  // namespace octafront::surface

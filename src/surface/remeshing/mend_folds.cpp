@@ -13,7 +13,7 @@
 #include <optional>
 #include <queue>
 
-namespace octafront::remeshing {
+namespace octafront::surface {
 
 namespace {
 
@@ -493,4 +493,4 @@ MendedFolds mend_folds(WorkingMesh& mesh, const FoldLimits& limits, const RunCon
   return FoldMender(mesh, limits).run(context);
 }
 
-}  // namespace octafront::remeshing
+}  // namespace octafront::surface

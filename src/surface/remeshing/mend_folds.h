@@ -15,7 +15,7 @@
 #include <limits>
 #include <vector>
 
-namespace octafront::remeshing {
+namespace octafront::surface {
 
 /// What counts as a fold or as a bad triangle, and how far the surface may move to be rid of it.
 struct FoldLimits {
@@ -51,4 +51,4 @@ struct MendedFolds {
 /// crossings. Cost: O(n), and about a millisecond for each place.
 MendedFolds mend_folds(WorkingMesh& mesh, const FoldLimits& limits, const RunContext& context);
 
-}  // namespace octafront::remeshing
+}  // namespace octafront::surface

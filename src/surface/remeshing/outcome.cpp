@@ -6,7 +6,7 @@
 #include <algorithm>
 #include <utility>
 
-namespace octafront::remeshing {
+namespace octafront::surface {
 
 namespace {
 
@@ -99,4 +99,4 @@ std::vector<std::uint32_t> triangles_of(const std::vector<std::array<std::uint32
   return triangles;
 }
 
-}  // namespace octafront::remeshing
+}  // namespace octafront::surface

@@ -12,7 +12,7 @@
 #include <limits>
 #include <utility>
 
-namespace octafront::remeshing {
+namespace octafront::surface {
 
 namespace {
 
@@ -269,4 +269,4 @@ std::unique_ptr<FrontKind> make_plain_front(FrontWork& work) {
   return std::make_unique<PlainFront>(work);
 }
 
-}  // namespace octafront::remeshing
+}  // namespace octafront::surface

@@ -21,7 +21,7 @@ namespace octafront {
 
 namespace {
 
-using namespace remeshing;
+using namespace surface;
 
 /// Rounds of capping the sizes around what crosses. CT isosurfaces of half a million triangles need up to 16.
 constexpr int kMostRounds = 24;

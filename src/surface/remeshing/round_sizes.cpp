@@ -6,7 +6,7 @@
 #include <algorithm>
 #include <utility>
 
-namespace octafront::remeshing {
+namespace octafront::surface {
 
 void RoundSizes::cap(const std::vector<Vec3>& places, double factor) {
   std::vector<PointSize> wanted;
@@ -67,4 +67,4 @@ void RoundSizes::forget_caps() {
   }
 }
 
-}  // namespace octafront::remeshing
+}  // namespace octafront::surface

@@ -16,7 +16,7 @@
 
 #include <fmt/core.h>
 
-namespace octafront::remeshing {
+namespace octafront::surface {
 
 namespace {
 
@@ -331,4 +331,4 @@ std::unique_ptr<FrontKind> make_seamed_front(FrontWork& work) {
   return std::make_unique<SeamedFront>(work);
 }
 
-}  // namespace octafront::remeshing
+}  // namespace octafront::surface

@@ -102,7 +102,7 @@ std::optional<std::string> SurfaceKind::first_defect_but_crossings(const Surface
   if (auto defect = first_bad_vertex(result)) return defect;
   const RepairedSurface as_is = as_it_is(result);
   const EdgeTable table = make_edge_table(result.points.size(), result.triangles);
-  if (auto defect = first_line(defects::find_defects_but_crossings(as_is, table, context))) return defect;
+  if (auto defect = first_line(tidy::find_defects_but_crossings(as_is, table, context))) return defect;
   const auto [made, piece_of_triangle] = shells_of(result, table);
   if (places) {
     const std::vector<std::uint8_t> is_wrong = wrong_pieces(made);
@@ -134,7 +134,7 @@ std::optional<std::string> first_complex_defect_but_crossings(const SurfaceMesh&
                                                               std::vector<Vec3>* places) {
   if (auto bad = first_bad_vertex(complex)) return bad;
   const EdgeTable edges = make_edge_table(complex.points.size(), complex.triangles);
-  const SurfaceDefects found = defects::find_region_defects(as_it_is(complex), edges, context, places);
+  const SurfaceDefects found = tidy::find_region_defects(as_it_is(complex), edges, context, places);
   return first_line(found);
 }
 

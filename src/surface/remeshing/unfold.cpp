@@ -2,7 +2,7 @@
 
 #include <octafront/surface_mesh.h>
 
-namespace octafront::remeshing {
+namespace octafront::surface {
 
 namespace {
 
@@ -56,4 +56,4 @@ std::optional<Unfolded> unfold(const SurfaceMesh& surface, const EdgeTable& edge
   return unfolded(mesh, surface, std::move(mended));
 }
 
-}  // namespace octafront::remeshing
+}  // namespace octafront::surface

@@ -7,7 +7,7 @@
 
 #include <optional>
 
-namespace octafront::remeshing {
+namespace octafront::surface {
 
 /// A surface without its folds, and what that took.
 struct Unfolded {
@@ -21,4 +21,4 @@ struct Unfolded {
 std::optional<Unfolded> unfold(const SurfaceMesh& surface, const EdgeTable& edges, double tolerance,
                                const RunContext& context);
 
-}  // namespace octafront::remeshing
+}  // namespace octafront::surface

@@ -8,7 +8,7 @@
 
 #include <gtest/gtest.h>
 
-namespace octafront::remeshing {
+namespace octafront::surface {
 namespace {
 
 using testing::icosphere;
@@ -92,4 +92,4 @@ TEST(Thinned, TheSmallestOfNearPlacesStays) {
 }
 
 }  // namespace
-}  // namespace octafront::remeshing
+}  // namespace octafront::surface

@@ -7,7 +7,7 @@
 
 #include <gtest/gtest.h>
 
-namespace octafront::remeshing {
+namespace octafront::surface {
 namespace {
 
 struct Sized {
@@ -63,4 +63,4 @@ TEST(PointGrid, FindsFinerAndCoarserPoints) {
 }
 
 }  // namespace
-}  // namespace octafront::remeshing
+}  // namespace octafront::surface
