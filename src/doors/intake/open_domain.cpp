@@ -11,7 +11,7 @@
 #include "base/core/wording.h"
 #include "doors/intake/cell.h"
 #include "doors/intake/intake.h"
-#include "sizing/search/budget.h"
+#include "sizing/sources/budget.h"
 #include "soup/cells/bodies.h"
 
 #include <algorithm>

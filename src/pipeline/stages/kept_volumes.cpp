@@ -169,8 +169,8 @@ void keep_surface_volumes(const Prepared& input, Remeshed& made, const Run& run,
   // Opposite faces of a cell stay copies of each other.
   if (!run.options.surface.keep_volumes || !run.options.periodic.empty()) return;
   const std::uint64_t moved =
-      remeshing::keep_volumes_clean(made.surface, made.features, volumes_of_regions(input.surface.mesh()),
-                                    vertices_on_faces(made.surface, input.cell), stage.context());
+      surface::keep_volumes_clean(made.surface, made.features, volumes_of_regions(input.surface.mesh()),
+                                  vertices_on_faces(made.surface, input.cell), stage.context());
   stage.count("vertices moved for volumes", static_cast<double>(moved));
 }
 
@@ -185,7 +185,7 @@ void keep_mesh_volumes(const Prepared& input, const std::vector<double>& wanted,
     ElementsBeside beside(filled.mesh, surface);
     const TooFar too_far = [&] {
       std::vector<VertexIndex> back = beside.spoilt();
-      return back.empty() ? remeshing::vertices_in_crossings(surface) : back;
+      return back.empty() ? surface::vertices_in_crossings(surface) : back;
     };
     const std::uint64_t moved = keep_volumes(surface, filled.boundary.features, wanted, too_far,
                                              vertices_on_faces(surface, input.cell), stage.context());

@@ -1,7 +1,7 @@
 #include "sizing/sources/wanted_sizes.h"
 
 #include "base/geometry/measures.h"
-#include "sizing/prediction/affordable.h"
+#include "sizing/field/affordable.h"
 #include "sizing/sources/curvature.h"
 #include "sizing/sources/feature_sizes.h"
 #include "sizing/sources/gaps.h"

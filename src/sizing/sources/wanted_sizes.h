@@ -9,7 +9,7 @@
 #include "base/core/stage.h"
 #include "base/mesh/known_surface.h"
 #include "sizing/field/background_grid.h"
-#include "sizing/sources/shares.h"
+#include "sizing/sources/source_shares.h"
 #include "sizing/sources/surface_samples.h"
 
 #include <cstdint>

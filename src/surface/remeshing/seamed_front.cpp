@@ -3,21 +3,21 @@
 #include "base/core/elementary.h"
 #include "base/geometry/measures.h"
 #include "base/mesh/complex.h"
-#include "surface/folds/draw_to_input.h"
-#include "surface/ground/crossings.h"
+#include "surface/edits/crossings.h"
+#include "surface/lines/corner_sizes.h"
+#include "surface/lines/flat_sizes.h"
+#include "surface/lines/least_sizes.h"
+#include "surface/remeshing/draw_to_input.h"
+#include "surface/remeshing/far_places.h"
 #include "surface/remeshing/front_kind.h"
-#include "surface/remeshing/nearness.h"
 #include "surface/remeshing/periodic_faces.h"
-#include "surface/sizes/corner_sizes.h"
-#include "surface/sizes/flat_sizes.h"
-#include "surface/sizes/least_sizes.h"
 
 #include <algorithm>
 #include <cmath>
 
 #include <fmt/core.h>
 
-namespace octafront::remeshing {
+namespace octafront::surface {
 
 namespace {
 
@@ -353,4 +353,4 @@ std::unique_ptr<FrontKind> make_seamed_front(FrontWork& work) {
   return std::make_unique<SeamedFront>(work);
 }
 
-}  // namespace octafront::remeshing
+}  // namespace octafront::surface
