@@ -6,8 +6,8 @@
 #include "base/core/thread_limit.h"
 #include "base/core/wording.h"
 #include "images/labels/closing.h"
-#include "images/labels/contacts.h"
 #include "images/labels/runs.h"
+#include "images/labels/small_contacts.h"
 
 #include <algorithm>
 #include <cmath>

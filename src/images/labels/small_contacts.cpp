@@ -1,4 +1,4 @@
-#include "images/labels/contacts.h"
+#include "images/labels/small_contacts.h"
 
 #include "base/core/disjoint_sets.h"
 #include "base/core/elementary.h"
