@@ -159,13 +159,13 @@ struct CleanOptions {
   bool any() const { return islands > 0 || holes > 0 || closing > 0 || contacts > 0; }
 };
 
-/// Closes, removes islands, fills holes, clears small contacts, in this order; voxels that share a face hang together. Closing takes voxels of
-/// the outside only: those that are in reach of a region from all sides (the morphological closing with an octahedron
-/// of `closing` voxels), the first region's where several are. Islands and holes go to the region, or the outside, that
-/// has most faces with them. The largest piece of each region stays whatever its size: no region is lost. A contact is cleared by
-/// the layer of voxels on one of its sides, if that shortens the lines where three regions meet, cuts no region in two
-/// there and takes at most a twentieth of one. What was done
-/// is in the notes of the result. The same bits on any number of threads.
+/// Closes, removes islands, fills holes, clears small contacts, in this order; voxels that share a face hang together.
+/// Closing takes voxels of the outside only: those that are in reach of a region from all sides (the morphological
+/// closing with an octahedron of `closing` voxels), the first region's where several are. Islands and holes go to the
+/// region, or the outside, that has most faces with them. The largest piece of each region stays whatever its size: no
+/// region is lost. A contact is cleared by the layer of voxels on one of its sides, if that shortens the lines where
+/// three regions meet, cuts no region in two there and takes at most a twentieth of one. What was done is in the notes
+/// of the result. The same bits on any number of threads.
 LabelImage cleaned(const LabelImage& image, const CleanOptions& options, const RunContext& context = no_context());
 
 }  // namespace octafront

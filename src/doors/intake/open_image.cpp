@@ -72,12 +72,11 @@ ImageRegions regions_of(const ImageIntake& asked, const RunContext& context) {
 double size_to_come(const Image& image, const ImageRegions& regions, const ImageIntake& asked) {
   if (asked.size || !asked.elements) return asked.size.value_or(0);
   const LabelImage labels = labels_of(image, regions.labels);
-  const auto voxels = static_cast<double>(std::ranges::count_if(
-      labels.regions, [](std::uint16_t region) { return region != LabelImage::kNoRegion; }));
+  const auto voxels = static_cast<double>(
+      std::ranges::count_if(labels.regions, [](std::uint16_t region) { return region != LabelImage::kNoRegion; }));
   const auto& [a, b, c] = image.grid.axes;
   constexpr double kTetsPerCube = 9.24;  // of the edge length
-  return elementary::cbrt(kTetsPerCube * voxels * std::abs(dot(cross(a, b), c)) /
-                          static_cast<double>(*asked.elements));
+  return elementary::cbrt(kTetsPerCube * voxels * std::abs(dot(cross(a, b), c)) / static_cast<double>(*asked.elements));
 }
 
 double area_of_contacts(const Image& image, const ImageRegions& regions, const ImageIntake& asked) {

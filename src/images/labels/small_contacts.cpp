@@ -199,8 +199,8 @@ class NarrowParts {
   static constexpr Index kRow = 64;
   const Faces& faces_;
   std::uint32_t reach_;
-  std::vector<Face> face_;             ///< ascending
-  std::vector<std::uint32_t> first_;   ///< the first face of every kRow voxels
+  std::vector<Face> face_;            ///< ascending
+  std::vector<std::uint32_t> first_;  ///< the first face of every kRow voxels
   std::vector<std::uint8_t> from_line_, from_wide_;
 };
 
