@@ -52,6 +52,11 @@ class EdgeCollapser {
     std::vector<TetIndex> old;
     std::vector<Piece::NewTet> fresh;
     std::vector<Piece::NewWall> walls;
+
+    void clear() {
+      gone = onto = kNone, worst = 0;
+      old.clear(), fresh.clear(), walls.clear();
+    }
   };
 
   PassCount sweep(int round) {
@@ -87,6 +92,7 @@ class EdgeCollapser {
       for (const auto& [i, j] : kTetEdges) {
         const Vertex &p = piece_.vertices[c[i]], &q = piece_.vertices[c[j]];
         if (!(waits(c[i]) || waits(c[j])) || (!may_go(p) && !may_go(q))) continue;
+        if (!goes && squared_bounds(p, q, piece_.isotropic).surely_beyond(kShortest)) continue;
         const double l = piece_.edge_length(c[i], c[j]);
         if (l < kShortest || goes) found.push_back({l, sorted_edge(c[i], c[j]), t});
       }
@@ -105,13 +111,16 @@ class EdgeCollapser {
 
   bool collapse(TetIndex t, VertexIndex a, VertexIndex b) {
     if (!piece_.ring(t, a, b, ring_)) return false;
-    Plan one, other;
-    if (may_go(piece_.vertices[a])) plan(a, b, one);
-    if (may_go(piece_.vertices[b])) plan(b, a, other);
-    const Plan& best = other.worst > one.worst ? other : one;
-    if (!(best.worst > 0)) return false;
-    apply(best);
-    return true;
+    one_.clear(), other_.clear();
+    if (may_go(piece_.vertices[a])) plan(a, b, one_);
+    if (may_go(piece_.vertices[b])) plan(b, a, other_);
+    const bool first = !(other_.worst > one_.worst);
+    for (Plan* plan : {first ? &one_ : &other_, first ? &other_ : &one_}) {
+      if (!(plan->worst > 0) || !keeps_surface(*plan)) continue;
+      apply(*plan);
+      return true;
+    }
+    return false;
   }
 
   /// Whether the vertex may go to the other end as far as walls and lines are concerned.
@@ -144,10 +153,12 @@ class EdgeCollapser {
 
   void plan(VertexIndex u, VertexIndex w, Plan& out) {
     if (!kinds_allow(u, w)) return;
-    const Kind kind = piece_.vertices[u].kind;
     out.gone = u, out.onto = w;
-    if (!plan_tets(out)) return out.worst = 0, void();
-    if (kind != Kind::kInner && (!keeps_manifold(u, w) || !plan_walls(out))) out.worst = 0;
+    if (!plan_tets(out)) out.worst = 0;
+  }
+  bool keeps_surface(Plan& out) {
+    return piece_.vertices[out.gone].kind == Kind::kInner ||
+           (keeps_manifold(out.gone, out.onto) && plan_walls(out));
   }
 
   bool plan_tets(Plan& out) {
@@ -182,11 +193,10 @@ class EdgeCollapser {
         if (v != plan.gone && v != plan.onto && seen_[v] != stamp_) seen_[v] = stamp_, around_.push_back(v);
     double longest_had = -1;
     for (const VertexIndex v : around_) {
-      const double l = piece_.edge_length(plan.onto, v);
-      if (l <= kLongestOfCollapse) continue;
+      if (!piece_.is_longer(plan.onto, v, kLongestOfCollapse)) continue;
       if (longest_had < 0)
         for (const VertexIndex u : around_) longest_had = std::max(longest_had, piece_.edge_length(plan.gone, u));
-      if (l > longest_had) return false;
+      if (piece_.edge_length(plan.onto, v) > longest_had) return false;
     }
     return true;
   }
@@ -311,6 +321,7 @@ class EdgeCollapser {
   const Guide& guide_;
   bool mends_;
   EdgeRing ring_;
+  Plan one_, other_;
   Link link_, other_link_;
   std::vector<VertexIndex> edge_link_, edge_walls_, around_;
   std::vector<int> changed_;         ///< per vertex: one more than the last round that changed something around it

@@ -148,8 +148,8 @@ class Splitter {
     double limit = kLongest;
     const Tet& c = piece_.tet(t);
     for (const auto& [i, j] : kTetEdges) {
-      const double l = piece_.edge_length(c[i], c[j]);
-      if (l > limit && may_split(c[i], c[j])) limit = l, best = {{c[i], c[j]}, l};
+      if (piece_.is_longer(c[i], c[j], limit) && may_split(c[i], c[j]))
+        limit = piece_.edge_length(c[i], c[j]), best = {{c[i], c[j]}, limit};
     }
     return best;
   }
@@ -238,8 +238,7 @@ class Splitter {
       shortest /= excess * excess;
     }
     for (const VertexIndex r : ring_.ring) {
-      const Vertex& v = piece_.vertices[r];
-      if (piece_.length_between(made, v) < shortest) return false;
+      if (piece_.is_shorter(made, piece_.vertices[r], shortest)) return false;
     }
     return plan_tets(a, b, made, least, [&](const auto&, float score) { return score; });
   }
@@ -276,7 +275,7 @@ class Splitter {
     return std::all_of(ring_.tets.begin(), ring_.tets.end(), [&](TetIndex t) {
       const Tet& c = piece_.tet(t);
       return std::all_of(kTetEdges.begin(), kTetEdges.end(),
-                         [&](const auto& e) { return piece_.edge_length(c[e[0]], c[e[1]]) <= l; });
+                         [&](const auto& e) { return !piece_.is_longer(c[e[0]], c[e[1]], l); });
     });
   }
 

@@ -7,8 +7,10 @@
 
 #include "adapt/metric/metric.h"
 #include "base/core/flat_map.h"
+#include "base/geometry/predicates.h"
 #include "base/mesh/tet_complex.h"
 
+#include <algorithm>
 #include <array>
 #include <cmath>
 #include <cstdint>
@@ -65,8 +67,42 @@ inline double length_between(const Vertex& p, const Vertex& q, bool isotropic) {
   const double squared = dot(e, e);
   return log_mean(std::sqrt(p.metric.xx * squared), std::sqrt(q.metric.xx * squared));
 }
+/// Bounds of the squared length of an edge: most of them need no more to be told short, long or neither.
+struct SquaredBounds {
+  double least, most;
+
+  bool surely_within(double length) const { return most <= (1 - kSlack) * length * length; }
+  bool surely_beyond(double length) const { return least >= (1 + kSlack) * length * length; }
+
+ private:
+  static constexpr double kSlack = 1e-9;  ///< more than lengths and their squares differ by rounding
+};
+/// A length lies between those in the metrics of the two ends.
+inline SquaredBounds squared_bounds(const Vertex& p, const Vertex& q, bool isotropic) {
+  const Vec3 e = q.at - p.at;
+  const double squared = dot(e, e), a = isotropic ? p.metric.xx * squared : p.metric.squared(e),
+               b = isotropic ? q.metric.xx * squared : q.metric.squared(e);
+  return {std::min(a, b), std::max(a, b)};
+}
 /// The score of a tet with these corners, 0 if it is not positive by exact sign.
-float score_of_corners(const std::array<const Vertex*, 4>& c, bool isotropic);
+inline float score_of_corners(const std::array<const Vertex*, 4>& c, bool isotropic) {
+  // Of elements of a better score the sign of the volume is beyond doubt: rounding is 1e-14 of the edges at most.
+  constexpr double kCertainScore = 1e-9;
+  const Vec3 p = c[0]->at, q = c[1]->at, r = c[2]->at, s = c[3]->at;
+  const auto estimate = detail::orient3d_estimate(p, q, r, s);
+  double worth = 0;
+  if (isotropic) {  // a size makes all lengths longer alike: the shape alone counts
+    worth = metric_score(estimate.det, p, q, r, s);
+    if (worth > kCertainScore) return static_cast<float>(worth);
+  }
+  const int certain = estimate.certain_sign();
+  if (certain < 0 || (certain == 0 && orient3d(p, q, r, s) <= 0)) return 0;
+  if (!isotropic) {
+    const Vertex& d = densest_of(c);
+    worth = metric_score(estimate.det, d.metric, d.density, p, q, r, s);
+  }
+  return std::max(static_cast<float>(worth), 1e-30f);
+}
 
 /// A mesh whose every part carries a number: tets, half-faces on walls, edges on lines. Flat arrays.
 struct Parts {
@@ -109,6 +145,15 @@ class Piece {
 
   double edge_length(VertexIndex a, VertexIndex b) const { return length_between(vertices[a], vertices[b]); }
   double length_between(const Vertex& p, const Vertex& q) const { return adapt::length_between(p, q, isotropic); }
+  bool is_longer(const Vertex& p, const Vertex& q, double length) const {
+    return !squared_bounds(p, q, isotropic).surely_within(length) && length_between(p, q) > length;
+  }
+  bool is_longer(VertexIndex a, VertexIndex b, double length) const {
+    return is_longer(vertices[a], vertices[b], length);
+  }
+  bool is_shorter(const Vertex& p, const Vertex& q, double length) const {
+    return !squared_bounds(p, q, isotropic).surely_beyond(length) && length_between(p, q) < length;
+  }
   /// The score of a tet on these vertices, 0 if it is not positive by exact sign.
   float score_of(const Tet& t) const { return score_with(t, kNone, Vertex{}); }
   /// The same with another place and metric of vertex v.
@@ -165,16 +210,33 @@ class Piece {
   struct Rim {
     HalfFace across = kNone;
     Wall wall = 0;
-    bool open = false;
+  };
+  /// Faces that wait for the other of their two sides: open addressing, emptied by a count of its uses.
+  class OpenFaces {
+   public:
+    /// Room for so many.
+    void reset(std::size_t faces);
+    /// Takes the face out, and says so, or puts it in with this.
+    bool take_or_put(const Triangle& corners, const Rim& put, Rim& taken);
+
+   private:
+    struct Slot {
+      Triangle key;
+      std::uint32_t use = 0;
+      bool waits = false;
+      Rim rim;
+    };
+    std::vector<Slot> slots_;
+    std::uint32_t use_ = 0;
+    int shift_ = 0;
   };
 
   void connect();
-  void toggle(const Triangle& corners, HalfFace across, Wall wall);
   void tie(TetIndex t);
   TetIndex slot();
 
   FlatMap<Edge, std::uint32_t> lines_;
-  FlatMap<Triangle, Rim> rim_;
+  OpenFaces rim_;
   std::vector<TetIndex> created_;
 };
 
