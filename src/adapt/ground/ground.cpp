@@ -183,8 +183,8 @@ std::optional<Ground::Home> Ground::home(Vec3 p, std::uint32_t part, bool outer,
   return Home{on->at, on->normal};
 }
 
-std::optional<Vec3> Ground::on_surface(Vec3 p, std::uint32_t part, bool outer, Vec3 normal, double reach) const {
-  std::uint32_t near = kNone;
+std::optional<Vec3> Ground::on_surface(Vec3 p, std::uint32_t part, bool outer, Vec3 normal, double reach,
+                                       std::uint32_t& near) const {
   const auto at = home(p, part, outer, normal, reach, near);
   if (!at) return std::nullopt;
   return at->at;

@@ -56,7 +56,13 @@ class Ground {
 
   /// The place on the reference surface of a part that is nearest to p; none if it is farther than `reach`, or turned
   /// away from `normal`. The outer boundary must face outward, interfaces and sheets may face either way.
-  std::optional<Vec3> on_surface(Vec3 p, std::uint32_t part, bool outer, Vec3 normal, double reach) const;
+  std::optional<Vec3> on_surface(Vec3 p, std::uint32_t part, bool outer, Vec3 normal, double reach) const {
+    std::uint32_t near = kNone;
+    return on_surface(p, part, outer, normal, reach, near);
+  }
+  /// `near`: a triangle of the walls that may be near, or kNone; becomes the one found.
+  std::optional<Vec3> on_surface(Vec3 p, std::uint32_t part, bool outer, Vec3 normal, double reach,
+                                 std::uint32_t& near) const;
   /// The same on the reference curve of a path.
   std::optional<Vec3> on_line(Vec3 p, std::uint32_t path, double reach) const;
 

@@ -64,26 +64,18 @@ Metric cut(const Metric& m, double most, double least) {
   return is_within ? m : e.tensor();
 }
 
-/// density(vertex): sqrt(det M) there.
-template <class Density>
-double integral_of(const TetMesh& mesh, const Density& density) {
+double complexity_of(const TetMesh& mesh, std::span<const Metric> metrics) {
   return parallel_sum(mesh.tets.size(), [&](std::size_t begin, std::size_t end) {
     double sum = 0;
     for (std::size_t t = begin; t < end; ++t) {
       const auto& [a, b, c, d] = mesh.tets[t];
       const double six = six_volumes(mesh.points[a], mesh.points[b], mesh.points[c], mesh.points[d]);
       double densities = 0;
-      for (const VertexIndex v : mesh.tets[t]) densities += density(v);
+      for (const VertexIndex v : mesh.tets[t]) densities += adapt::density_of(metrics[v]);
       sum += six / 24 * densities;
     }
     return sum;
   });
-}
-
-double complexity_of(const TetMesh& mesh, std::span<const Metric> metrics) {
-  std::vector<double> densities(metrics.size());
-  parallel_for(densities.size(), [&](std::size_t v) { densities[v] = adapt::density_of(metrics[v]); });
-  return integral_of(mesh, [&](VertexIndex v) { return densities[v]; });
 }
 
 /// The bounds as eigenvalues: largest, least.
@@ -141,18 +133,25 @@ class Grading {
 };
 
 double scale_for(const TetMesh& mesh, std::span<const Metric> metrics, double target, const Bounds& bounds) {
-  // What is asked for many factors needs the eigenvalues alone.
+  // What is asked about many factors needs the eigenvalues alone, and the share of each point in the volume.
   std::vector<std::array<double, 3>> values(metrics.size());
   parallel_for(values.size(), [&](std::size_t v) { values[v] = adapt::eigen(metrics[v]).value; });
+  std::vector<double> volume(metrics.size(), 0);
+  for (const Tet& t : mesh.tets) {
+    const double six = six_volumes(mesh.points[t[0]], mesh.points[t[1]], mesh.points[t[2]], mesh.points[t[3]]);
+    for (const VertexIndex v : t) volume[v] += six / 24;
+  }
   const auto [most, least] = values_of(bounds);
   const auto reached = [&](double factor) {
-    std::vector<double> densities(values.size());
-    parallel_for(densities.size(), [&](std::size_t v) {
-      double determinant = 1;
-      for (const double value : values[v]) determinant *= std::clamp(factor * value, least, most);
-      densities[v] = std::sqrt(determinant);
+    return parallel_sum(volume.size(), [&](std::size_t begin, std::size_t end) {
+      double sum = 0;
+      for (std::size_t v = begin; v < end; ++v) {
+        double determinant = 1;
+        for (const double value : values[v]) determinant *= std::clamp(factor * value, least, most);
+        sum += volume[v] * std::sqrt(determinant);
+      }
+      return sum;
     });
-    return integral_of(mesh, [&](VertexIndex v) { return densities[v]; });
   };
   const double start = complexity_of(mesh, metrics);
   const double power = target / start;

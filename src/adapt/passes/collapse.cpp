@@ -2,6 +2,7 @@
 
 #include "adapt/passes/passes.h"
 #include "adapt/passes/worth.h"
+#include "base/mesh/link_condition.h"
 
 #include <algorithm>
 #include <cmath>
@@ -83,6 +84,10 @@ class EdgeCollapser {
     const auto waits = [&](VertexIndex v) {
       return round == 0 ? mends_ || piece_.vertices[v].active : changed_[v] == round;
     };
+    worst_at_.assign(piece_.vertices.size(), 2);
+    for (TetIndex t = 0; t < piece_.complex.slots(); ++t)
+      if (piece_.complex.alive(t))
+        for (const VertexIndex v : piece_.tet(t)) worst_at_[v] = std::min(worst_at_[v], piece_.score[t]);
     for (TetIndex t = 0; t < piece_.complex.slots(); ++t) {
       if (!piece_.complex.alive(t)) continue;
       const Tet& c = piece_.tet(t);
@@ -92,9 +97,12 @@ class EdgeCollapser {
       for (const auto& [i, j] : kTetEdges) {
         const Vertex &p = piece_.vertices[c[i]], &q = piece_.vertices[c[j]];
         if (!(waits(c[i]) || waits(c[j])) || (!may_go(p) && !may_go(q))) continue;
-        if (!goes && squared_bounds(p, q, piece_.isotropic).surely_beyond(kShortest)) continue;
+        // Around others there is one that is poorer, and asks by itself.
+        const float score = piece_.score[t];
+        const bool helps = goes && (mends_ || worst_at_[c[i]] == score || worst_at_[c[j]] == score);
+        if (!helps && squared_bounds(p, q, piece_.isotropic).surely_beyond(kShortest)) continue;
         const double l = piece_.edge_length(c[i], c[j]);
-        if (l < kShortest || goes) found.push_back({l, sorted_edge(c[i], c[j]), t});
+        if (l < kShortest || helps) found.push_back({l, sorted_edge(c[i], c[j]), t});
       }
     }
     const auto before = [](const Short& a, const Short& b) {
@@ -157,8 +165,7 @@ class EdgeCollapser {
     if (!plan_tets(out)) out.worst = 0;
   }
   bool keeps_surface(Plan& out) {
-    return piece_.vertices[out.gone].kind == Kind::kInner ||
-           (keeps_manifold(out.gone, out.onto) && plan_walls(out));
+    return piece_.vertices[out.gone].kind == Kind::kInner || (keeps_manifold(out.gone, out.onto) && plan_walls(out));
   }
 
   bool plan_tets(Plan& out) {
@@ -245,58 +252,17 @@ class EdgeCollapser {
     return {piece_.point(f[0]), piece_.point(f[1]), piece_.point(f[2])};
   }
 
-  /// The link condition (T. Dey, H. Edelsbrunner, S. Guha, D. Nekhayev, "Topology preserving edge contraction", 1999),
-  /// for a vertex on walls: the tets on all sides, and the walls by themselves.
+  /// For a vertex on walls: the tets on all sides, and the walls by themselves.
   bool keeps_manifold(VertexIndex u, VertexIndex w) {
-    link_of(u, link_), link_of(w, other_link_);
-    edge_link_.clear(), edge_walls_.clear();
-    for (const TetIndex t : ring_.tets)
-      for (const VertexIndex v : piece_.tet(t))
-        if (v != u && v != w) edge_link_.push_back(v);
-    make_set(edge_link_);
-    return meet_only_in(link_.vertices, other_link_.vertices, edge_link_) && common_edges() == ring_.tets.size() &&
-           meet_only_in(link_.wall_vertices, other_link_.wall_vertices, walls_of_ring());
-  }
-
-  struct Link {
-    std::vector<VertexIndex> vertices, wall_vertices;
-    std::vector<Edge> edges;
-  };
-  void link_of(VertexIndex v, Link& link) {
-    link.vertices.clear(), link.wall_vertices.clear(), link.edges.clear();
-    for (const TetIndex t : piece_.star(v)) {
-      const HalfFace base = piece_.complex.opposite(t, v);
-      const Triangle f = piece_.complex.face(base);
-      for (int i = 0; i < 3; ++i) {
-        link.vertices.push_back(f[i]);
-        link.edges.push_back(sorted_edge(f[i], f[(i + 1) % 3]));
-        if (piece_.wall[piece_.complex.opposite(t, f[i])] == 0) continue;
-        link.wall_vertices.push_back(f[(i + 1) % 3]), link.wall_vertices.push_back(f[(i + 2) % 3]);
-      }
-    }
-    make_set(link.vertices), make_set(link.wall_vertices), make_set(link.edges);
-  }
-  static bool meet_only_in(const std::vector<VertexIndex>& a, const std::vector<VertexIndex>& b,
-                           const std::vector<VertexIndex>& allowed) {
-    std::vector<VertexIndex> common;
-    std::set_intersection(a.begin(), a.end(), b.begin(), b.end(), std::back_inserter(common));
-    return std::includes(allowed.begin(), allowed.end(), common.begin(), common.end());
-  }
-  std::size_t common_edges() const {
-    std::vector<Edge> common;
-    std::set_intersection(link_.edges.begin(), link_.edges.end(), other_link_.edges.begin(), other_link_.edges.end(),
-                          std::back_inserter(common));
-    return common.size();
-  }
-  /// The vertices of walls at the edge beside its ends.
-  const std::vector<VertexIndex>& walls_of_ring() {
-    for (std::size_t k = 0; k < ring_.tets.size(); ++k) {
-      const VertexIndex from = ring_.ring[k], to = ring_.ring[(k + 1) % ring_.ring.size()];
-      if (piece_.wall[piece_.complex.opposite(ring_.tets[k], to)] != 0) edge_walls_.push_back(from);
-      if (piece_.wall[piece_.complex.opposite(ring_.tets[k], from)] != 0) edge_walls_.push_back(to);
-    }
-    make_set(edge_walls_);
-    return edge_walls_;
+    const auto tet = [&](TetIndex t) -> const Tet& { return piece_.tet(t); };
+    const auto is_wall = [&](HalfFace h) { return piece_.wall[h] != 0; };
+    const auto faces_behind = [&](VertexIndex v) -> std::span<const HalfFace> {
+      star_.clear();
+      for (const TetIndex t : piece_.star(v)) star_.push_back(piece_.complex.opposite(t, v));
+      return star_;
+    };
+    const VertexLink of_w = link_of(faces_behind(w), tet, is_wall), of_u = link_of(faces_behind(u), tet, is_wall);
+    return may_contract(of_u, of_w, link_of(star_, tet, is_wall, w));
   }
 
   void apply(const Plan& p) {
@@ -322,8 +288,9 @@ class EdgeCollapser {
   bool mends_;
   EdgeRing ring_;
   Plan one_, other_;
-  Link link_, other_link_;
-  std::vector<VertexIndex> edge_link_, edge_walls_, around_;
+  std::vector<HalfFace> star_;
+  std::vector<float> worst_at_;  ///< per vertex: the least score of its elements
+  std::vector<VertexIndex> around_;
   std::vector<int> changed_;         ///< per vertex: one more than the last round that changed something around it
   std::vector<std::uint32_t> seen_;  ///< per vertex: the last stamp it got
   std::uint32_t stamp_ = 0;

@@ -52,9 +52,7 @@ class WallCheck {
 
  private:
   static Vec3 middle(const TriangleCorners& t, std::size_t i) { return 0.5 * (t[i] + t[(i + 1) % 3]); }
-  static double longest_edge(const TriangleCorners& t) {
-    return std::sqrt(longest_squared_edge(t[0], t[1], t[2]));
-  }
+  static double longest_edge(const TriangleCorners& t) { return std::sqrt(longest_squared_edge(t[0], t[1], t[2])); }
 
   bool is_true(const TriangleCorners& t) {
     const Vec3 normal = double_area_normal(t[0], t[1], t[2]);
@@ -157,11 +155,10 @@ class VertexMover {
     return true;
   }
 
-  /// Of walls on the ground; asks for the metric there.
+  /// Of walls on the ground.
   bool put(Vertex& to, const std::optional<std::uint32_t>& path) {
     if (to.kind != Kind::kInner && !snap(to, path)) return false;
     to.off = false;
-    guide_.ask(to);
     return true;
   }
 
@@ -179,7 +176,10 @@ class VertexMover {
     for (int k = 0; k < kTriesOfMove; ++k, step *= 0.5) {
       Vertex to = from;
       to.at = from.at + step;
-      if (!put(to, path) || !is_better(to, had, lack) || !walls_stay_true(to)) continue;
+      if (!put(to, path)) continue;
+      if (!piece_.isotropic) guide_.ask(to);
+      if (!is_better(to, had, lack) || !walls_stay_true(to)) continue;
+      if (piece_.isotropic) guide_.ask(to);  // a size has no say in scores
       piece_.move(v, to, star_, scores_);
       return true;
     }
@@ -198,6 +198,7 @@ class VertexMover {
         Vertex to = best;
         to.at = best.at + step;
         if (!put(to, path)) continue;
+        guide_.ask(to);
         const float s = worst_with(to, worst);
         if (s > worst && walls_stay_true(to)) best = to, worst = s;
       }
@@ -216,7 +217,7 @@ class VertexMover {
     float worst = HUGE_VALF;
     for (Cell& cell : cells_) {
       cell.corners[cell.at] = &to;
-      worst = std::min(worst, worth_of_corners(cell.corners, piece_.isotropic));
+      worst = std::min(worst, worth_of_corners(cell.corners, piece_));
       if (!(worst > least)) return 0;
     }
     return worst;

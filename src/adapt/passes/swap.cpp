@@ -64,11 +64,23 @@ class Swapper {
     gain_ = kLeastGainOfSwap;
     old_.clear();
     const Tet c = piece_.tet(t);
-    for (const auto& [i, j] : kTetEdges) try_edge(t, c[i], c[j]);
+    const unsigned closed = closed_faces(t);
+    for (const auto& [i, j] : kTetEdges)
+      if ((closed & ~(1u << i | 1u << j)) == 0) try_edge(t, c[i], c[j]);
     for (int i = 0; i < 4; ++i) try_face(t, i);
     if (old_.empty()) return false;
     piece_.replace(old_, fresh_, walls_);
     return true;
+  }
+
+  /// A bit for each face of t that no ring it asks for goes through: what lies behind is beyond the rim, or poorer.
+  unsigned closed_faces(TetIndex t) const {
+    unsigned faces = 0;
+    for (HalfFace i = 0; i < 4 && !mends_; ++i) {
+      const HalfFace o = piece_.complex.across[4 * t + i];
+      if (o == kBeyondRim || (!is_outside(o) && piece_.score[o / 4] < piece_.score[t])) faces |= 1u << i;
+    }
+    return faces;
   }
 
   bool are_frozen(VertexIndex a, VertexIndex b) const { return piece_.vertices[a].frozen && piece_.vertices[b].frozen; }

@@ -16,7 +16,7 @@ constexpr float kLittleChange = 0.04f;
 
 Piece::Piece(const Parts& mesh, std::span<const TetIndex> tets, std::span<const Parts::Line> lines,
              std::vector<VertexIndex>& here)
-    : isotropic(mesh.isotropic), lines_(lines.size()) {
+    : isotropic(mesh.isotropic), poor(mesh.poor), lines_(lines.size()) {
   std::vector<VertexIndex> taken;
   complex.tets.reserve(tets.size() + tets.size() / 2);
   region.reserve(tets.size());

@@ -13,6 +13,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <cstddef>
 #include <cstdint>
 #include <optional>
 #include <span>
@@ -24,12 +25,9 @@ namespace octafront::adapt {
 /// How free a vertex is.
 enum class Kind : std::uint8_t { kInner, kSurface, kCurve, kFixed };
 
-struct Vertex {
+/// What passes ask about most lies in one line of the cache.
+struct alignas(64) Vertex {
   Vec3 at;
-  Metric metric;
-  double density = 1;        ///< density_of(metric)
-  std::uint32_t id = kNone;  ///< in the mesh that was given; kNone: new
-  std::uint32_t hint = 0;    ///< where the metric was looked up (MetricField::at)
   Kind kind = Kind::kInner;
   bool rim = false;     ///< of a piece: some of its tets are not there, so it stays
   bool active = true;   ///< something may be left to connect, split or collapse around it
@@ -42,7 +40,12 @@ struct Vertex {
   /// For what mends: kStirred, something around it changed; kSettling, just before the cycle that is under way; kCalm,
   /// all that could be tried around it has been, in vain.
   enum Calmness : std::uint8_t { kCalm, kSettling, kStirred } calmness = kStirred;
+  std::uint32_t id = kNone;  ///< in the mesh that was given; kNone: new
+  std::uint32_t hint = 0;    ///< where the metric was looked up (MetricField::at)
+  double density = 1;        ///< density_of(metric)
+  Metric metric;
 };
+static_assert(offsetof(Vertex, metric) + sizeof(double) <= 64);
 
 /// The label of a half-face that lies on a wall, else 0: one more than the number of the part, and kOuter where nothing
 /// lies across.
@@ -117,6 +120,7 @@ struct Parts {
   static constexpr std::uint32_t kStays = kNone;
   std::vector<Line> lines;
   bool isotropic = false;  ///< all metrics are those of sizes
+  float poor = 0;          ///< elements of a lower score are mended
 };
 
 /// The tets of a Parts that one worker may change, and those vertices, walls and lines that they have.
@@ -132,6 +136,7 @@ class Piece {
   std::vector<Wall> wall;             ///< per half-face
   std::vector<float> score;           ///< per slot: metric_score()
   bool isotropic = false;             ///< Parts::isotropic
+  float poor = 0;                     ///< Parts::poor
 
   const Tet& tet(TetIndex t) const { return complex.tets[t]; }
   Vec3 point(VertexIndex v) const { return vertices[v].at; }
@@ -155,12 +160,8 @@ class Piece {
     return !squared_bounds(p, q, isotropic).surely_beyond(length) && length_between(p, q) < length;
   }
   /// The score of a tet on these vertices, 0 if it is not positive by exact sign.
-  float score_of(const Tet& t) const { return score_with(t, kNone, Vertex{}); }
-  /// The same with another place and metric of vertex v.
-  float score_with(const Tet& t, VertexIndex v, const Vertex& as) const {
-    std::array<const Vertex*, 4> c;
-    for (int i = 0; i < 4; ++i) c[i] = t[i] == v ? &as : &vertices[t[i]];
-    return score_of_corners(c);
+  float score_of(const Tet& t) const {
+    return score_of_corners({&vertices[t[0]], &vertices[t[1]], &vertices[t[2]], &vertices[t[3]]});
   }
   float score_of_corners(const std::array<const Vertex*, 4>& c) const { return adapt::score_of_corners(c, isotropic); }
 
