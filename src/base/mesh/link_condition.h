@@ -6,6 +6,8 @@
 #include <octafront/ids.h>
 #include <octafront/tet_mesh.h>
 
+#include "base/mesh/adjacency.h"
+
 #include <algorithm>
 #include <iterator>
 #include <span>
