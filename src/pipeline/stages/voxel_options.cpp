@@ -49,9 +49,11 @@ Options options_for_voxels(Options options, double spacing) {
       sizes.chord_error = kDeviation * spacing;
   }
   if (!options.surface.feature_angle) options.surface.feature_angle = kBoxAngle;
-  if (sizes.size || sizes.elements)
-    options.surface.finest = std::min(sizes.size.value_or(spacing),
-                                      std::max(spacing, is_bounded ? 0 : kLeastOfSize * sizes.size.value_or(0)));
+  if (is_bounded)
+    options.surface.finest = std::min(spacing, *options.surface.max_deviation);
+  else if (sizes.size || sizes.elements)
+    options.surface.finest =
+        std::min(sizes.size.value_or(spacing), std::max(spacing, kLeastOfSize * sizes.size.value_or(0)));
   return options;
 }
 
