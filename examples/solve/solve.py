@@ -264,7 +264,20 @@ def sphere(case):
                   sum(at_joint) / len(at_joint), expected, 0.01, worst)
 
 
-CASES = {f.__name__: f for f in (cantilever, pipe, patch, heat, plate, bar, sphere)}
+def pressed(case):
+    pressure, young, poisson = 100.0, 210000.0, 0.3
+    corners = {"origin": "0,0,0", "along_x": "10,0,0", "along_y": "0,10,0"}
+    groups = [f for name, p in corners.items() for f in ("--group", f"{name}=sphere:{p},.01")]
+    mesh = case.mesh_together({"cube": bodies.box((0, 0, 0), (10, 10, 10), ["cube"] * 6)}, "--size", "4",
+                              "--region", "cube=5,5,5", *groups)
+    case.solve()
+    moved, shrink = case.fields()["DISP"], pressure * (1 - 2 * poisson) / young
+    worst = max(abs(u + shrink * x) for n, p in mesh.nodes.items() for u, x in zip(moved[n], p)) / (10 * shrink)
+    found = -sum(moved[mesh.node_sets["along_x"][0]])
+    return result(case, mesh, "shortening under pressure, mm, and the worst node's error over it", found, 10 * shrink, 1e-5, worst)
+
+
+CASES = {f.__name__: f for f in (cantilever, pipe, patch, heat, plate, bar, sphere, pressed)}
 
 
 def main():

@@ -29,14 +29,17 @@ using Kind = NamedSet::Kind;
 /// Sides S1 = 123, S2 = 124, S3 = 234, S4 = 134, by the corner that they lack.
 constexpr std::array<char, 4> kSideName{'3', '4', '2', '1'};
 constexpr std::array<int, 3> kDirections{0, 1, 2};
+constexpr NameRules kAbaqusNames{.longest = 64, .one_space = true};
 class AbaqusWriter {
  public:
   AbaqusWriter(MeshOutput& out, const MeshParts& mesh)
       : text_(out.file()),
         mesh_(mesh),
         cells_(mesh),
-        names_(legal_names(out, mesh, {.longest = 64})),
-        number_(cells_.cells()) {}
+        names_(legal_names(out, mesh, kAbaqusNames)),
+        number_(cells_.cells()) {
+    for (const std::string& name : names_) further_.legal(name);
+  }
 
   void write() {
     text_ << "*HEADING\nMesh by octafront\n";
@@ -208,7 +211,7 @@ class AbaqusWriter {
   MixedCells cells_;
   std::vector<std::string> names_;  ///< of the parts
   std::size_t number_;              ///< of the last element
-  LegalNames further_{{.longest = 64}};
+  LegalNames further_{kAbaqusNames};
 };
 
 }  // namespace

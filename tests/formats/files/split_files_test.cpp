@@ -1,4 +1,4 @@
-// Cohesive elements and beams in Abaqus files.
+// Cohesive elements, beams and names in Abaqus files.
 
 #include <octafront/error.h>
 #include <octafront/io.h>
@@ -76,6 +76,25 @@ TEST(SplitFiles, CurvesAreBeamsWhereAsked) {
   ASSERT_EQ(curved.size(), 2u);
   EXPECT_EQ(numbers_of(curved[0]).size(), 4u);
   EXPECT_THROW(write_mesh(file, mesh, {}, {.beams = "rope"}), OptionError);
+}
+
+TEST(AbaqusNames, SurfacesAndElementsShareNone) {
+  const testing::TemporaryFolder folder;
+  TetMesh mesh = testing::rich_mesh(2);
+  mesh.region_names = {"bone", "Marrow"};
+  mesh.patch_names.assign(7, "bone");
+  mesh.patch_names[1] = "marrow";
+  mesh.patch_names[2] = "bone_surface";
+  mesh.sets = {{"skin", NamedSet::Kind::kElements, {0, 1}}, {"skin", NamedSet::Kind::kFaces, {0}}};
+  const std::string file = (folder / "names.inp").string();
+  write_mesh(file, mesh);
+  std::ifstream in(file);
+  std::vector<std::string> surfaces;
+  for (std::string line; std::getline(in, line);)
+    if (line.starts_with("*SURFACE")) surfaces.push_back(line.substr(15, line.find(", TYPE") - 15));
+  EXPECT_EQ(surfaces, (std::vector<std::string>{"bone_surface", "marrow_surface", "bone_surface_2", "bone_surface_3",
+                                                "bone_surface_4", "bone_surface_5", "bone_surface_6", "skin_surface"}));
+  EXPECT_EQ(read_mesh(file).patch_names[1], "marrow");
 }
 
 }  // namespace
