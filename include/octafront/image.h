@@ -27,6 +27,12 @@ struct ImageGrid {
   std::size_t voxels() const { return std::size_t{size[0]} * size[1] * size[2]; }
   double slice(std::uint32_t k) const { return slices.empty() ? k : slices[k]; }
   Vec3 to_world(Vec3 index) const { return origin + axes[0] * index.x + axes[1] * index.y + axes[2] * index.z; }
+  /// The way back: (i, j, slice(k)) and what is between.
+  Vec3 to_index(Vec3 world) const {
+    const auto& [a, b, c] = axes;
+    const Vec3 d = (world - origin) * (1 / dot(a, cross(b, c)));
+    return {dot(cross(b, c), d), dot(cross(c, a), d), dot(cross(a, b), d)};
+  }
   friend bool operator==(const ImageGrid&, const ImageGrid&) = default;
 };
 

@@ -105,8 +105,8 @@ constexpr Format with_surfaces_alone(Format format) {
   format.info.holds.surfaces_alone = true;
   return format;
 }
-constexpr Format with_fields(Format format) {
-  format.info.holds.surfaces_alone = format.write_mesh != nullptr;  // parts are of volumes
+constexpr Format with_fields(Format format, bool surfaces_alone = true) {
+  format.info.holds.surfaces_alone = surfaces_alone && format.write_mesh != nullptr;  // parts are of volumes
   format.info.holds.fields = true;
   return format;
 }
@@ -187,8 +187,9 @@ constexpr std::array kFormats{
          told_unv, read_unv),
     read(with_wedges(mesh("med", "MED 4", ".med", binary(kAll), "families and groups; needs HDF5", kWriteMed)),
          told_hdf5, kReadMed),
-    read(with_wedges(of_several_files(
-             mesh("xdmf", "XDMF", ".xdmf", binary(kAll), "with values in files .h5 beside; needs HDF5", kWriteXdmf))),
+    read(with_fields(with_wedges(of_several_files(mesh("xdmf", "XDMF", ".xdmf", binary(kAll),
+                                                       "with values in files .h5 beside; needs HDF5", kWriteXdmf))),
+                     false),
          told_xdmf, kReadXdmf),
     with_wedges(mesh("exodus", "Exodus II", ".exo .e .ex2", binary(kSolver), "blocks, node, side and element sets",
                      write_exodus)),

@@ -57,6 +57,18 @@ class AbaqusWriter {
     if (!mesh_.mesh().periods.empty()) write_periods();
   }
 
+  void write_materials(const std::vector<SetMaterial>& materials, double poissons_ratio) {
+    for (const SetMaterial& material : materials)
+      for (std::size_t p = 0; p < names_.size(); ++p) {
+        const Part& part = mesh_.parts()[p];
+        if (part.origin != Part::Origin::kSet || part.kind != Kind::kElements || part.name != material.set) continue;
+        text_.line("** {}: {} = {:.9g}", names_[p], one_line(material.quantity), material.value);
+        if (material.quantity != "E") continue;
+        text_.line("*MATERIAL, NAME={}\n*ELASTIC\n{:.9g}, {:.9g}", names_[p], material.value, poissons_ratio);
+        text_.line("*SOLID SECTION, ELSET={0}, MATERIAL={0}", names_[p]);
+      }
+  }
+
   /// Of the curves in a list with commas. Throws OptionError.
   void write_beams(const std::string& list) {
     for (const std::string& name : names_listed(list, mesh_.mesh().curve_names)) write_beams_of(name);
@@ -224,6 +236,7 @@ void write_abaqus(MeshOutput& out, const MeshParts& mesh) {
                    "tetrahedra, `as_tets`");
   AbaqusWriter writer(out, mesh);
   writer.write();
+  writer.write_materials(out.options().materials, out.options().poissons_ratio);
   writer.write_beams(out.options().beams);
   if (!out.options().cohesive) return;
   if (mesh.second_order())

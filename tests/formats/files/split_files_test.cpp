@@ -87,13 +87,14 @@ TEST(AbaqusNames, SurfacesAndElementsShareNone) {
   mesh.patch_names[2] = "bone_surface";
   mesh.sets = {{"skin", NamedSet::Kind::kElements, {0, 1}}, {"skin", NamedSet::Kind::kFaces, {0}}};
   const std::string file = (folder / "names.inp").string();
-  write_mesh(file, mesh);
+  write_mesh(file, mesh, {}, {.materials = {{"skin", "E", 12.5}}, .poissons_ratio = .25});
   std::ifstream in(file);
   std::vector<std::string> surfaces;
   for (std::string line; std::getline(in, line);)
     if (line.starts_with("*SURFACE")) surfaces.push_back(line.substr(15, line.find(", TYPE") - 15));
   EXPECT_EQ(surfaces, (std::vector<std::string>{"bone_surface", "marrow_surface", "bone_surface_2", "bone_surface_3",
                                                 "bone_surface_4", "bone_surface_5", "bone_surface_6", "skin_surface"}));
+  EXPECT_EQ(lines_under(file, "*ELASTIC"), (std::vector<std::string>{"12.5, 0.25"}));
   EXPECT_EQ(read_mesh(file).patch_names[1], "marrow");
 }
 
