@@ -26,7 +26,7 @@ struct TypedLength {
 };
 
 /// What people choose who do not want to think: how fine automatic sizes are, and how long elements are improved.
-enum class Preset { kDraft, kStandard, kFine };
+enum class Preset { kDraft, kStandard, kFine, kHead };
 
 /// What the user typed, as the commands need it.
 struct Arguments {

@@ -151,9 +151,10 @@ auto telling_what_was_made(Session& session, const Work& work) {
 template <class Generator>
 auto run_on_input(Session& session, const Generator& generator) {
   const Arguments& a = session.arguments();
-  const Options options = checked_options_of(session);
+  Options options = checked_options_of(session);
   Domain domain;
   together(session.context().ranks, "input", [&] { domain = open_input(session, intake_for(options, a.intake)); });
+  add_sizes_of_head(a, domain, options);
   for (const GroupRule& rule : a.groups) check_group(domain.surface, rule);
   try {
     if (!a.page.empty()) find_repairs(session, domain.surface);

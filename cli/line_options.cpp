@@ -112,9 +112,26 @@ Vec3 point_of(const std::string& option, const std::string& typed, const std::st
   return *point;
 }
 
+/// NAME=thickness:LO..HI or NAME=.6*thickness:LO..HI.
+NamedSize size_by_thickness(const std::string& name, const std::string& before, const std::string& range) {
+  NamedSize named{name, 0, 1, 0};
+  const std::size_t dots = range.find("..");
+  const auto is_number = [](const std::string& word, double& value) { return CLI::detail::lexical_cast(word, value); };
+  const bool has_factor =
+      before.empty() || (before.ends_with('*') && is_number(before.substr(0, before.size() - 1), named.of_thickness));
+  if (!has_factor || dots == std::string::npos || !is_number(range.substr(0, dots), named.size) ||
+      !is_number(range.substr(dots + 2), named.most))
+    throw CLI::ValidationError("--size-of",
+                               "\"" + name + "=" + before + "thickness:" + range +
+                                   "\" is no size by thickness; write NAME=thickness:1..5 or NAME=.6*thickness:1..10");
+  return named;
+}
+
 /// PLACE=H, where the place may have signs of equality of its own.
 NamedSize named_size(const std::string& text) {
   const std::size_t at = text.rfind('=');
+  if (const std::size_t by = text.find("thickness:", at + 1); at != std::string::npos && at > 0 && by != text.npos)
+    return size_by_thickness(text.substr(0, at), text.substr(at + 1, by - at - 1), text.substr(by + 10));
   double size = 0;
   if (at == std::string::npos || at == 0 || !CLI::detail::lexical_cast(text.substr(at + 1), size))
     throw CLI::ValidationError("--size-of", "\"" + text + "\" is not NAME=H, the name of a part and a size");
@@ -231,13 +248,18 @@ std::vector<LineOption> size_options() {
   return {
       {"mesh", kGroup, "--preset", "",
        "draft: automatic sizes with about a quarter of the elements, improved fast; fine: with eight times as many, "
-       "improved best; options that are given go before [standard]",
-       choice_of<Preset>({{"draft", Preset::kDraft}, {"standard", Preset::kStandard}, {"fine", Preset::kFine}},
+       "improved best; head: sizes of a head's labels by their thickness, in mm; options that are given go before "
+       "[standard]",
+       choice_of<Preset>({{"draft", Preset::kDraft},
+                          {"standard", Preset::kStandard},
+                          {"fine", Preset::kFine},
+                          {"head", Preset::kHead}},
                          [](Arguments& a, Preset preset) { a.preset = preset; }),
        "How fine automatic sizes are, and how long the mesh is improved"},
       {kSizers, kGroup, "--size-of", "PLACE=H",
        "Edge length at a place: in and around a region, on a patch, along a curve, in box:... or sphere:...; of CAD "
-       "also \"color #ff8000\" or \"layer NAME\"; may be repeated",
+       "also \"color #ff8000\" or \"layer NAME\"; NAME=[F*]thickness:LO..HI: of a region F times its thickness, "
+       "within a range; may be repeated",
        each([](Arguments& a, const std::string& typed) { a.options.size.named.push_back(named_size(typed)); }),
        "Edge length in a region, on a patch or along a curve"},
       {kSizers, kGroup, "--size-near", "PLACE|X,Y,Z=H:DISTANCE",

@@ -169,4 +169,15 @@ struct CleanOptions {
 /// is in the notes of the result. The same bits on any number of threads.
 LabelImage cleaned(const LabelImage& image, const CleanOptions& options, const RunContext& context = no_context());
 
+/// A disc on the skin.
+struct Electrode {
+  Vec3 at;                        ///< on the body or near it
+  double radius = 0, height = 0;  ///< > 0, in the unit of the file
+};
+
+/// Adds a region for each electrode, "electrode" or "electrode 2", whose label is above 100 and all others: voxels
+/// outside of all regions that lie no farther from them than it is high, within its radius around the line that leads
+/// outward where the body is nearest. Throws OptionError for one that has no voxel.
+LabelImage with_electrodes(LabelImage image, const std::vector<Electrode>& electrodes);
+
 }  // namespace octafront

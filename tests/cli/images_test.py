@@ -244,6 +244,18 @@ class Images(unittest.TestCase):
         self.assertFalse((self.dir / "no.vtu").exists())
         self.run_cli("convert", mesh, "-o", self.dir / "no.vtu", "--group", "FIX=patches:nosuch", status=2)
 
+    def test_electrodes_are_discs_on_the_skin(self):
+        size = (30, 30, 20)
+        image = self.write("plate.nii", nifti(size, boxes(size, (5, (2, 2, 2), (28, 28, 10)))))
+        made = self.volumes(image, "--electrode", "15,15,30:6:3", "--electrode", "3,15,6:3:2")
+        self.assertEqual(list(made), ["label 5", "electrode 1", "electrode 2"])
+        self.assertAlmostEqual(made["electrode 1"] / (3.1416 * 36 * 3), 1, 1)
+        self.assertIn("electrode 1: ", self.run_cli("check", image, "--electrode", "15,15,30:6:3", "--electrode", "3,15,6:3:2").stdout)
+        self.assertEqual(list(self.volumes(image, "--electrode", "15,15,9:6:3")), ["label 5", "electrode"])
+        for bad in ("1,2:3:4", "1,2,3:4", "1,2,3:0:4", "1,2,3:x:4"):
+            self.run_cli("check", image, "--electrode", bad, status=2)
+        self.run_cli("check", CT, "--band", "100:", "--electrode", "0,0,0:5:5", status=2)
+
     def test_cropping_and_resampling(self):
         image = self.two_boxes()
         cropped = self.volumes(image, "--crop", "0:5,:,:")

@@ -126,6 +126,7 @@ void refuse_image_options(const ImageIntake& image, const std::string& name) {
                                                 {!image.names_file.empty() || !labels.names.empty(), "labels"},
                                                 {labels.ignore.has_value(), "ignore"},
                                                 {!labels.merge.empty(), "merge"},
+                                                {!image.regions.electrodes.empty(), "electrode"},
                                                 {clean.islands > 0, "islands"},
                                                 {clean.holes > 0, "holes"},
                                                 {clean.closing > 0, "close_voxels"},

@@ -139,6 +139,7 @@ constexpr Format of_several_files(Format format) {
   format.info.one_file = false;
   return format;
 }
+constexpr FormatHolds kTissues{.regions = Keeps::kNumbers, .interfaces = true};
 constexpr FormatHolds kSu2{.patches = Keeps::kNames};
 constexpr FormatHolds kOpenFoam{.regions = Keeps::kNames, .patches = Keeps::kNames, .interfaces = true};
 
@@ -177,6 +178,9 @@ constexpr std::array kFormats{
              with_wedges(or_text(mesh("msh22", "Gmsh MSH 2.2", "", binary(without_sets(kAll)),
                                       "binary or text: regions, patches, curves as physical groups", write_msh2)))),
          nullptr, read_msh),
+    with_fields(or_text(mesh("simnibs", "SimNIBS (MSH 2.2)", "", binary(kTissues),
+                             "labels as tags of tetrahedra, 1000 more of triangles; binary or text", write_simnibs)),
+                false),
     read(with_cohesive(with_wedges(mesh("abaqus", "Abaqus, CalculiX", ".inp", kSolver,
                                         "ELSET, NSET, SURFACE; numbers of at most 20 characters", write_abaqus))),
          told_abaqus, read_abaqus),

@@ -51,7 +51,8 @@ Options options_for_voxels(Options options, double spacing) {
   if (!options.surface.feature_angle) options.surface.feature_angle = kBoxAngle;
   if (!sizes.size && !sizes.elements) return options;
   if (!sizes.gap) sizes.gap = 1;
-  const double least = std::max(spacing, kLeastOfSize * sizes.size.value_or(0));
+  double least = std::max(spacing, kLeastOfSize * sizes.size.value_or(0));
+  for (const NamedSize& named : sizes.named) least = std::min(least, named.size);  // who names a place means it
   if (!sizes.min_size) sizes.min_size = std::min(least, sizes.size.value_or(spacing));
   return options;
 }
