@@ -292,7 +292,7 @@ class Images(unittest.TestCase):
         message = self.run_cli("check", self.write("cut.nii.gz", data[:-40]), status=3).stderr
         self.assertIn("cut.nii.gz", message)
         self.assertIn("--series is for images", self.run_cli("check", SAMPLES / "gear.obj", "--series", 1, status=2).stderr)
-        self.assertIn("without DICOM files", self.run_cli("info", self.dir, status=3).stderr)
+        self.assertIn("is no mask", self.run_cli("info", self.dir, status=3).stderr)
 
     def test_info_describes_the_grid(self):
         found = self.info(LABELS)

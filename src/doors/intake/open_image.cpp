@@ -2,6 +2,7 @@
 #include <octafront/image.h>
 #include <octafront/image_surface.h>
 
+#include "base/core/wording.h"
 #include "doors/intake/cell.h"
 #include "doors/intake/coarser_voxels.h"
 #include "doors/intake/intake.h"
@@ -107,6 +108,22 @@ void name_faces_of_box(SurfaceMesh& surface, const ImageGrid& grid) {
   surface.patch_names = std::move(names);
 }
 
+/// Said to be labels, and not whole: programs that resample or average leave such.
+std::optional<Image> with_whole_labels(const Image& image) {
+  const auto* values = std::get_if<std::vector<float>>(&image.values);
+  if (values == nullptr) return std::nullopt;
+  Image made{image.grid, *values, {}, image.format, image.unit, image.frame, image.names};
+  std::size_t changed = 0;
+  for (float& v : std::get<std::vector<float>>(made.values)) {
+    const float whole = std::round(v);
+    changed += v != whole;
+    v = whole;
+  }
+  if (changed == 0) return std::nullopt;
+  made.notes.push_back(fmt::format("labels are whole numbers: {} rounded", counted(changed, "voxel is", "voxels are")));
+  return made;
+}
+
 void check_cleaning(const CleanOptions& clean) {
   for (const auto& [option, volume] : {std::pair{"islands", clean.islands}, std::pair{"holes", clean.holes}})
     if (!(volume >= 0)) throw OptionError(fmt::format("`{}` is {}: it must not be below 0", option, volume));
@@ -142,8 +159,12 @@ void take_image(Domain& domain, const IntakeOptions& options, const Image& image
   check_cleaning(options.image.regions.clean);
   note_all(domain, options, "reading", image.notes);
   const ImageRegions regions = regions_of(options.image, context);
-  const std::optional<Image> part = taken(domain, options, image, regions, context);
-  const Image& used = part ? *part : image;
+  const std::optional<Image> whole =
+      regions.kind == ImageRegions::Kind::kLabels ? with_whole_labels(image) : std::nullopt;
+  if (whole) note_all(domain, options, "reading", whole->notes);
+  const Image& given = whole ? *whole : image;
+  const std::optional<Image> part = taken(domain, options, given, regions, context);
+  const Image& used = part ? *part : given;
   domain.format = image.format;
   domain.frame = image.frame;
   domain.voxel_spacing = smallest_spacing(used.grid);
