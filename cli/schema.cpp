@@ -119,6 +119,7 @@ constexpr ReportField kReport[] = {
     {"regions[].tets", "integer", ""},
     {"regions[].volume", "number", "of the mesh"},
     {"regions[].input_volume", "number", "of the surface"},
+    {"regions[].needed_tets", "number", "regular tetrahedra of the given size that have its volume"},
     {"regions[].true_volume", "number", "of the CAD solid"},
     {"regions[].layers_volume", "number", "of its boundary layers"},
     {"regions[].quality", "object", "as that of the mesh"},

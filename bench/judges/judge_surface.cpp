@@ -10,8 +10,8 @@
 #include "base/geometry/measures.h"
 #include "base/mesh/features.h"
 #include "pipeline/stages/measure.h"
-#include "sizing/search/make_size_field.h"
-#include "surface/check/surface_check.h"
+#include "sizing/sources/make_size_field.h"
+#include "surface/remeshing/surface_check.h"
 
 #include <algorithm>
 #include <cmath>

@@ -5,7 +5,7 @@
                                     bench/pages/touched.py wrote stays as it is committed
 
 Wings are those that ARCHITECTURE.md of that commit names, rooms those of src/WING/README.md (before: of ARCHITECTURE.md); an arrow is a room (or wing) of which a file includes one of
-another; a circle is a set of rooms that reach each other.
+another; a circle is a set of rooms that reach each other; a class begins in the first column and ends there.
 """
 import collections
 import pathlib
@@ -18,6 +18,7 @@ sys.path.insert(0, str(pathlib.Path(__file__).resolve().parents[2]))
 from bench.pages.origin import written_by  # noqa: E402
 
 TOUCHED = "## What an edit costs"  # of bench/pages/touched.py, to the page's end
+CLASS = re.compile(r"^(?:class|struct) \w[^;{]*\{\n.*?^\};", re.M | re.S)
 INCLUDE = re.compile(r'^\s*#\s*include\s*"([^"]+)"', re.M)
 
 
@@ -86,10 +87,14 @@ class House:
     def lines(self, place=None, name=None):
         return sum(text.count("\n") for path, text in self.files.items() if place is None or place(path) == name)
 
+    def longest_class(self):
+        return max(text[0].count("\n") + 1 for file in self.files.values() for text in CLASS.finditer(file))
+
     def row(self):
         in_room = collections.Counter(filter(None, map(self.room, self.files)))
         return [self.name, len(self.wings), len(self.rooms), sum(map(len, self.room_arrows.values())), len(circles(self.room_arrows)),
-                sum(map(len, self.wing_arrows.values())), len(circles(self.wing_arrows)), len(self.files), max(in_room.values()), f"{self.lines():,}"]
+                sum(map(len, self.wing_arrows.values())), len(circles(self.wing_arrows)), len(self.files), max(in_room.values()), f"{self.lines():,}",
+                self.longest_class()]
 
 
 def picture(house):
@@ -110,8 +115,8 @@ def main():
     houses = [House(commit) for commit in sys.argv[1:]] + [House(None)]
     now = houses[-1]
     print("# The house\n\nWhat `ARCHITECTURE.md` says in words, counted.", written_by(" ".join(["bench/pages/house.py", *sys.argv[1:]])) + ".\n")
-    print("| commit | folders in `src/` | rooms | arrows between rooms | circles of rooms | arrows between folders | circles of these | files | most in a room | lines |")
-    print("| --- |" + " ---: |" * 9)
+    print("| commit | folders in `src/` | rooms | arrows between rooms | circles of rooms | arrows between folders | circles of these | files | most in a room | lines | longest class |")
+    print("| --- |" + " ---: |" * 10)
     for house in houses:
         print("|", " | ".join(map(str, house.row())), "|")
     print("\nAn arrow: a file of one includes a header of the other. The last row is the tree on top of the commit that it names.\n")

@@ -3,9 +3,9 @@
 
 #include <octafront/octafront.h>
 
+#include "formats/parts/division.h"
 #include "formats/parts/mesh_parts.h"
-#include "formats/pieces/division.h"
-#include "formats/pieces/pieces.h"
+#include "formats/parts/pieces.h"
 
 #include <cstdlib>
 #include <ctime>

@@ -159,14 +159,19 @@ struct CleanOptions {
   double islands = 0;         ///< pieces of regions below this volume go to what surrounds them
   double holes = 0;           ///< pieces of the outside, not at the image's edge, below this volume are filled
   std::uint32_t closing = 0;  ///< gaps of regions toward the outside close that are up to twice as many voxels wide
-  bool any() const { return islands > 0 || holes > 0 || closing > 0; }
+  /// Where two regions, or one and the outside, touch in a spot of less than this area (in the squared unit of the
+  /// file), or in a strip a voxel or two wide, a region beside it comes between them.
+  double contacts = 0;
+  bool any() const { return islands > 0 || holes > 0 || closing > 0 || contacts > 0; }
 };
 
-/// Closes, removes islands, fills holes, in this order; voxels that share a face hang together. Closing takes voxels of
-/// the outside only: those that are in reach of a region from all sides (the morphological closing with an octahedron
-/// of `closing` voxels), the first region's where several are. Islands and holes go to the region, or the outside, that
-/// has most faces with them. The largest piece of each region stays whatever its size: no region is lost. What was done
-/// is in the notes of the result. The same bits on any number of threads.
+/// Closes, removes islands, fills holes, clears small contacts, in this order; voxels that share a face hang together.
+/// Closing takes voxels of the outside only: those that are in reach of a region from all sides (the morphological
+/// closing with an octahedron of `closing` voxels), the first region's where several are. Islands and holes go to the
+/// region, or the outside, that has most faces with them. The largest piece of each region stays whatever its size: no
+/// region is lost. A contact is cleared by the layer of voxels on one of its sides, if that shortens the lines where
+/// three regions meet, cuts no region in two there and takes at most a twentieth of one. What was done is in the notes
+/// of the result. The same bits on any number of threads.
 LabelImage cleaned(const LabelImage& image, const CleanOptions& options, const RunContext& context = no_context());
 
 /// A disc on the skin.

@@ -128,6 +128,9 @@ struct SurfaceOptions {
   /// by .4 % of the diagonal. Other sizes then have no bound, and details give way: folds by a tenth of the size (at
   /// most .4 % of the diagonal), lines by a quarter of the size.
   std::optional<double> max_deviation;
+  /// What `max_deviation`, strips and corners of complexes ask for is no smaller than this, but at regions that would
+  /// be lost among such elements; input units. 0: they ask for what they need. generate() sets it for images.
+  double finest = 0;
   /// By how many degrees new triangles may turn against the input's surface at their corners and centroid: where they
   /// turn farther, sizes are made smaller, too; (0, 90].
   std::optional<double> normal_deviation;

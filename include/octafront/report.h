@@ -52,6 +52,7 @@ struct RegionSummary {
   double layers_volume = 0;  ///< of the boundary layers in it, which are a region of their own
   double input_volume = 0;   ///< of the input's region of this name; 0: not known
   double true_volume = 0;    ///< of the CAD solid; 0: not known
+  double needed = 0;         ///< regular tetrahedra of SizeOptions::size that have its volume; 0: no size was given
   QualitySummary quality;
 };
 

@@ -1,7 +1,7 @@
 #include <octafront/mpi.h>
 #include <octafront/ranks.h>
 
-#include "ranks/parts.h"
+#include "ranks/message_parts.h"
 
 #include <cstring>
 #include <numeric>

@@ -5,7 +5,7 @@
 #include <octafront/surface_mesh.h>
 #include <octafront/tet_mesh.h>
 
-#include "formats/table/formats.h"
+#include "formats/files/formats.h"
 
 #include <filesystem>
 #include <functional>

@@ -2,8 +2,8 @@
 
 #include <octafront/error.h>
 
+#include "formats/files/formats.h"
 #include "formats/parts/mesh_parts.h"
-#include "formats/table/formats.h"
 
 #include <algorithm>
 #include <cstdint>

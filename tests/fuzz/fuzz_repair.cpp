@@ -3,7 +3,7 @@
 #include <octafront/error.h>
 #include <octafront/repair.h>
 
-#include "formats/table/formats.h"
+#include "formats/files/formats.h"
 
 #include <cstdint>
 #include <cstdlib>

@@ -2,7 +2,7 @@
 
 #include <octafront/error.h>
 
-#include "formats/size_files/readers.h"
+#include "formats/files/size_readers.h"
 
 #include <cmath>
 #include <cstdint>

@@ -2,7 +2,7 @@
 
 #include <octafront/error.h>
 
-#include "formats/table/formats.h"
+#include "formats/files/formats.h"
 
 #include <cstdint>
 #include <cstdlib>

@@ -5,8 +5,8 @@
 #include <octafront/error.h>
 #include <octafront/image.h>
 
+#include "images/files/image_readers.h"
 #include "images/files/label_names.h"
-#include "images/files/readers.h"
 
 #include <algorithm>
 #include <cmath>

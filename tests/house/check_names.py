@@ -1,6 +1,7 @@
 #!/usr/bin/env python3
 """No two sources, and no two tests, of a wing give one name to different things in their unnamed namespaces: then many of them can be
 compiled as one (OCTAFRONT_UNITY), and no overload of another file is chosen unseen. Aliases of the same type may repeat.
+And no file of src has a name that a file of another room has: names tell rooms apart.
 
     check_names.py ROOT | --self-test
 """
@@ -39,6 +40,16 @@ def clashes(sources):
                 yield f"{wing}: {name} is a name of its own in {', '.join(file for file, _ in uses)}: let each say its subject"
 
 
+def shared_names(paths):
+    """paths: of files in src, as WING/ROOM/NAME. Yields a sentence for each name that stands in several rooms."""
+    rooms = collections.defaultdict(set)
+    for path in map(pathlib.PurePosixPath, paths):
+        rooms[path.stem].add("/".join(path.parts[:2]) if len(path.parts) > 2 else path.parts[0])
+    for name, places in sorted(rooms.items()):
+        if len(places) > 1:
+            yield f"{name} is the name of files in {', '.join(sorted(places))}: let each say what is in it"
+
+
 def read_sources(root):
     sources = collections.defaultdict(dict)
     for top in ("src", "tests", "cli", "cad"):
@@ -62,6 +73,7 @@ def self_test():
         assert not list(clashes({"wing": {"a.cpp": alone}, "other": {"b.cpp": source(body)}}))
     for body in ["using Kind = A::B;\n", "void kept(int) {}\n", "struct Other {\n  int made_of() { return 0; }\n};\n"]:
         assert not list(clashes({"wing": {"a.cpp": alone, "b.cpp": source(body)}})), body
+    assert len(list(shared_names(["fill/front/walls.h", "fill/front/walls.cpp", "soup/cells/walls.cpp", "ranks/mpi.cpp"]))) == 1
 
 
 def main():
@@ -69,7 +81,8 @@ def main():
         return self_test()
     sources = read_sources(pathlib.Path(sys.argv[1]))
     assert sum(len(files) for files in sources.values()) > 300, "the sources were not found"
-    found = list(clashes(sources))
+    src = pathlib.Path(sys.argv[1]) / "src"
+    found = [*clashes(sources), *shared_names(path.relative_to(src).as_posix() for path in src.rglob("*") if path.suffix in (".h", ".cpp"))]
     print("\n".join(found))
     return 1 if found else 0
 

@@ -4,7 +4,7 @@
 
 #include <octafront/image.h>
 
-#include "images/files/readers.h"
+#include "images/files/image_readers.h"
 
 #include <algorithm>
 #include <array>

@@ -3,7 +3,7 @@
 // The same mesh, kept otherwise: what improvement makes of it must not hang on where it keeps its elements.
 
 #include "base/core/random.h"
-#include "improve/pieces/pieces.h"
+#include "improve/schedule/mesh_of_pieces.h"
 
 namespace octafront::improve {
 

@@ -1,6 +1,6 @@
 #include "sizing/size_cases.h"
 
-#include "sizing/search/make_size_field.h"
+#include "sizing/sources/make_size_field.h"
 #include "support/named_surfaces.h"
 
 #include <algorithm>

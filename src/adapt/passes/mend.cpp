@@ -2,7 +2,7 @@
 // are seen well make way for those that join it to these faces (B. Klingner, J. Shewchuk, "Aggressive tetrahedral mesh
 // improvement", 2007).
 
-#include "adapt/passes/passes.h"
+#include "adapt/passes/metric_passes.h"
 #include "adapt/passes/worth.h"
 
 #include <algorithm>

@@ -1,7 +1,7 @@
 // Vertices that move to where the sum of what their elements lack is least, 1 / score - 1 of each: Newton's method, a
 // step for each visit, less and less of it as long as that is no gain.
 
-#include "adapt/passes/passes.h"
+#include "adapt/passes/metric_passes.h"
 #include "adapt/passes/worth.h"
 #include "base/geometry/measures.h"
 

@@ -3,7 +3,7 @@
 // topological improvement of tetrahedral meshes", 2002), or a face goes (2-3 flip). An edge inside a wall turns to the
 // other diagonal of its two triangles.
 
-#include "adapt/passes/passes.h"
+#include "adapt/passes/metric_passes.h"
 #include "adapt/passes/worth.h"
 
 #include <algorithm>

@@ -1,6 +1,6 @@
 #pragma once
 
-#include "adapt/piece/piece.h"
+#include "adapt/passes/piece.h"
 
 #include <algorithm>
 #include <array>

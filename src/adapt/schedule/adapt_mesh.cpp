@@ -1,16 +1,16 @@
 #include "adapt/schedule/adapt_mesh.h"
 
-#include "adapt/passes/passes.h"
+#include "adapt/passes/metric_passes.h"
 #include "adapt/passes/worth.h"
-#include "adapt/schedule/balance.h"
+#include "adapt/schedule/balance_walls.h"
 #include "adapt/schedule/metric_steps.h"
 #include "adapt/schedule/parts.h"
-#include "base/blocks/blocks.h"
 #include "base/core/disjoint_sets.h"
 #include "base/core/groups.h"
 #include "base/core/parallel.h"
 #include "base/core/validate.h"
 #include "base/geometry/measures.h"
+#include "base/shared/blocks.h"
 
 #include <algorithm>
 #include <cmath>

@@ -8,7 +8,7 @@
 
 #include "adapt/ground/given.h"
 #include "adapt/metric/metric.h"
-#include "adapt/piece/piece.h"
+#include "adapt/passes/piece.h"
 #include "adapt/schedule/nearness.h"
 #include "base/core/stage.h"
 #include "base/labels/labels.h"

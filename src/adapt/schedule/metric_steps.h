@@ -3,8 +3,8 @@
 // A metric of other directions is come to in steps: elements that lie across its directions would be divided without
 // end.
 
-#include "adapt/passes/passes.h"
-#include "adapt/piece/piece.h"
+#include "adapt/passes/metric_passes.h"
+#include "adapt/passes/piece.h"
 
 #include <cstddef>
 

@@ -6,7 +6,7 @@
 #include <octafront/surface_mesh.h>
 
 #include "adapt/ground/ground.h"
-#include "adapt/piece/piece.h"
+#include "adapt/passes/piece.h"
 #include "base/geometry/triangle_tree.h"
 
 #include <cmath>

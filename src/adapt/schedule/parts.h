@@ -6,7 +6,7 @@
 #include <octafront/tet_mesh.h>
 
 #include "adapt/ground/ground.h"
-#include "adapt/piece/piece.h"
+#include "adapt/passes/piece.h"
 #include "base/labels/labels.h"
 
 #include <cstdint>

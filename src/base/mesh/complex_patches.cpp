@@ -3,7 +3,7 @@
 #include <octafront/surface_mesh.h>
 
 #include "base/mesh/complex.h"
-#include "base/mesh/labels.h"
+#include "base/mesh/label_at.h"
 
 #include <map>
 #include <utility>

@@ -2,7 +2,7 @@
 
 #include <octafront/surface_mesh.h>
 
-#include "base/mesh/labels.h"
+#include "base/mesh/label_at.h"
 
 #include <algorithm>
 

@@ -153,6 +153,14 @@ std::vector<Row<IntakeOptions>> image_rows() {
               .also("check"),
           [](auto& o) -> auto& { return o.image.regions.clean.holes; }),
       intake_row(
+          about_intake("contacts", kGroup,
+                       "Where labels touch in spots below this area, or in strips of a voxel or two, a label beside "
+                       "them comes between; keep: they stay")
+              .takes("A|keep")
+              .without("the square of the size, or of that which `elements` come to")
+              .also("check"),
+          [](auto& o) -> auto& { return o.image.contacts; }),
+      intake_row(
           about_intake("close_voxels", kGroup,
                        "Gaps of regions toward the outside close that are up to twice as many voxels wide")
               .takes("N")

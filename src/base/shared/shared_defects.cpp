@@ -1,10 +1,10 @@
 #include "base/shared/shared_defects.h"
 
-#include "base/comm/in_parts.h"
-#include "base/comm/marks.h"
-#include "base/comm/packing.h"
 #include "base/mesh/face_table.h"
 #include "base/mesh/mesh_share.h"
+#include "base/shared/in_parts.h"
+#include "base/shared/marks.h"
+#include "base/shared/packing.h"
 #include "base/shared/shared_tets.h"
 
 #include <utility>

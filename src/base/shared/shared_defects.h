@@ -4,7 +4,7 @@
 #include <octafront/surface_mesh.h>
 #include <octafront/tet_mesh.h>
 
-#include "base/comm/comm.h"
+#include "base/shared/comm.h"
 
 #include <optional>
 #include <string>

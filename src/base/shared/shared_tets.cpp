@@ -1,10 +1,10 @@
 #include "base/shared/shared_tets.h"
 
-#include "base/comm/in_parts.h"
-#include "base/comm/marks.h"
-#include "base/comm/shares.h"
 #include "base/mesh/mesh_share.h"
 #include "base/mesh/renumber.h"
+#include "base/shared/in_parts.h"
+#include "base/shared/marks.h"
+#include "base/shared/shares.h"
 
 #include <algorithm>
 #include <array>

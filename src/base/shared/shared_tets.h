@@ -1,12 +1,12 @@
 #pragma once
 
-// base/shared: a mesh whose tetrahedra the ranks hold in shares. Points, faces and names are the same on all of them;
+// A mesh whose tetrahedra the ranks hold in shares. Points, faces and names are the same on all of them;
 // `tets` and `region` are what a rank has. Every call is made by all ranks.
 
 #include <octafront/tet_mesh.h>
 
-#include "base/comm/comm.h"
 #include "base/core/disjoint_sets.h"
+#include "base/shared/comm.h"
 
 #include <cstddef>
 #include <cstdint>

@@ -2,7 +2,7 @@
 
 #include "base/core/parallel.h"
 #include "cad/shapes/names.h"
-#include "cad/shapes/nearest.h"
+#include "cad/shapes/nearest_on.h"
 
 #include <algorithm>
 #include <set>

@@ -2,7 +2,7 @@
 
 #include "base/geometry/triangle_tree.h"
 #include "base/geometry/true_geometry.h"
-#include "cad/shapes/groups.h"
+#include "cad/shapes/face_groups.h"
 
 #include <cstdint>
 #include <optional>

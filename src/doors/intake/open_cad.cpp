@@ -8,12 +8,12 @@
 #include "base/core/wording.h"
 #include "base/mesh/curve_names.h"
 #include "cad/reader/cad_reader.h"
-#include "cad/shapes/collapse.h"
-#include "cad/shapes/groups.h"
+#include "cad/shapes/collapse_tiny.h"
+#include "cad/shapes/face_groups.h"
 #include "cad/shapes/names.h"
 #include "cad/shapes/shapes.h"
 #include "doors/intake/intake.h"
-#include "sizing/prediction/affordable.h"
+#include "sizing/field/affordable.h"
 
 #include <algorithm>
 #include <array>

@@ -11,7 +11,7 @@
 #include "base/core/wording.h"
 #include "doors/intake/cell.h"
 #include "doors/intake/intake.h"
-#include "sizing/search/budget.h"
+#include "sizing/sources/budget.h"
 #include "soup/cells/bodies.h"
 
 #include <algorithm>
@@ -28,6 +28,10 @@ IntakeOptions intake_for(const Options& options, IntakeOptions intake) {
   if (!cad.size && !cad.elements) {
     cad.elements = options.size.elements;
     if (!cad.elements) cad.size = options.size.size;
+  }
+  if (intake.image.contacts.empty() && !intake.image.size && !intake.image.elements) {
+    intake.image.size = options.size.size;
+    intake.image.elements = options.size.elements;
   }
   for (const NamedSize& named : options.size.named) cad.apart.push_back(named.name);
   for (const NearSize& near : options.size.near)

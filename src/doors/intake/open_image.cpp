@@ -2,6 +2,8 @@
 #include <octafront/image.h>
 #include <octafront/image_surface.h>
 
+#include "base/core/doubles.h"
+#include "base/core/elementary.h"
 #include "base/core/wording.h"
 #include "doors/intake/cell.h"
 #include "doors/intake/coarser_voxels.h"
@@ -124,6 +126,31 @@ std::optional<Image> with_whole_labels(const Image& image) {
   return made;
 }
 
+/// The edge length that elements of the labels will have; 0: not known.
+double size_to_come(const Image& image, const ImageRegions& regions, const ImageIntake& asked) {
+  if (asked.size || !asked.elements) return asked.size.value_or(0);
+  const LabelImage labels = labels_of(image, regions.labels);
+  const auto voxels = static_cast<double>(
+      std::ranges::count_if(labels.regions, [](std::uint16_t region) { return region != LabelImage::kNoRegion; }));
+  const auto& [a, b, c] = image.grid.axes;
+  constexpr double kTetsPerCube = 9.24;  // of the edge length
+  return elementary::cbrt(kTetsPerCube * voxels * std::abs(dot(cross(a, b), c)) / static_cast<double>(*asked.elements));
+}
+
+double area_of_contacts(const Image& image, const ImageRegions& regions, const ImageIntake& asked) {
+  if (asked.contacts == "keep") return 0;
+  if (!asked.contacts.empty()) {
+    double area = -1;
+    const char* const end = asked.contacts.data() + asked.contacts.size();
+    if (io::double_from_chars(asked.contacts.data(), end, area).ptr != end || !(area >= 0))
+      throw OptionError(fmt::format("`contacts` is \"{}\": give an area from 0 on, or keep", asked.contacts));
+    return area;
+  }
+  if (kind_of(image, regions) != ImageRegions::Kind::kLabels) return 0;
+  const double size = size_to_come(image, regions, asked);
+  return size * size;
+}
+
 void check_cleaning(const CleanOptions& clean) {
   for (const auto& [option, volume] : {std::pair{"islands", clean.islands}, std::pair{"holes", clean.holes}})
     if (!(volume >= 0)) throw OptionError(fmt::format("`{}` is {}: it must not be below 0", option, volume));
@@ -147,6 +174,7 @@ void refuse_image_options(const ImageIntake& image, const std::string& name) {
                                                 {clean.islands > 0, "islands"},
                                                 {clean.holes > 0, "holes"},
                                                 {clean.closing > 0, "close_voxels"},
+                                                {!image.contacts.empty(), "contacts"},
                                                 {!image.regions.closed_at_box, "closed_at_box"},
                                                 {crops(image), "crop"},
                                                 {!image.resample.empty(), "resample"}};
@@ -158,13 +186,14 @@ void take_image(Domain& domain, const IntakeOptions& options, const Image& image
                 const RunContext& context) {
   check_cleaning(options.image.regions.clean);
   note_all(domain, options, "reading", image.notes);
-  const ImageRegions regions = regions_of(options.image, context);
+  ImageRegions regions = regions_of(options.image, context);
   const std::optional<Image> whole =
       regions.kind == ImageRegions::Kind::kLabels ? with_whole_labels(image) : std::nullopt;
   if (whole) note_all(domain, options, "reading", whole->notes);
   const Image& given = whole ? *whole : image;
   const std::optional<Image> part = taken(domain, options, given, regions, context);
   const Image& used = part ? *part : given;
+  if (regions.clean.contacts == 0) regions.clean.contacts = area_of_contacts(used, regions, options.image);
   domain.format = image.format;
   domain.frame = image.frame;
   domain.voxel_spacing = smallest_spacing(used.grid);

@@ -7,8 +7,8 @@
 #include "fill/classic/classic_attempt.h"
 #include "fill/classic/classic_front.h"
 #include "fill/classic/surface_sizes.h"
+#include "fill/front/bind_to_surface.h"
 #include "fill/front/ladder.h"
-#include "fill/front/regions.h"
 
 #include <algorithm>
 #include <queue>

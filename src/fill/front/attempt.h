@@ -1,7 +1,7 @@
 #pragma once
 
+#include "fill/front/front_limits.h"
 #include "fill/front/front_task.h"
-#include "fill/front/limits.h"
 #include "fill/front/neighborhood.h"
 
 #include <optional>

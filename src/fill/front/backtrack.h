@@ -1,6 +1,6 @@
 #pragma once
 
-#include "fill/cavity/excavation.h"
+#include "fill/front/excavation.h"
 #include "fill/front/front_task.h"
 
 namespace octafront {

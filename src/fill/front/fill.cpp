@@ -2,7 +2,6 @@
 
 #include <octafront/error.h>
 
-#include "base/comm/packing.h"
 #include "base/core/disjoint_sets.h"
 #include "base/core/morton.h"
 #include "base/core/parallel.h"
@@ -10,9 +9,10 @@
 #include "base/geometry/sight_line.h"
 #include "base/mesh/complex.h"
 #include "base/mesh/renumber.h"
+#include "base/shared/packing.h"
 #include "fill/front/advance.h"
+#include "fill/front/bind_to_surface.h"
 #include "fill/front/ladder.h"
-#include "fill/front/regions.h"
 #include "fill/lattice/core.h"
 #include "fill/recovery/recover.h"
 #include "fill/recovery/refine.h"

@@ -1,6 +1,6 @@
 #include "fill/front/front_state.h"
 
-#include "fill/cavity/open_edge.h"
+#include "fill/front/open_edge.h"
 
 #include <algorithm>
 

@@ -3,14 +3,14 @@
 #include <octafront/error.h>
 #include <octafront/open_cavity_error.h>
 
-#include "base/comm/packing.h"
 #include "base/core/stage_timer.h"
 #include "base/core/validate.h"
 #include "base/mesh/renumber.h"
-#include "fill/cavity/star.h"
-#include "fill/cavity/work_mesh.h"
+#include "base/shared/packing.h"
 #include "fill/front/backtrack.h"
 #include "fill/front/recover_cavity.h"
+#include "fill/front/star.h"
+#include "fill/front/work_mesh.h"
 
 #include <algorithm>
 #include <array>

@@ -2,8 +2,8 @@
 
 #include <octafront/tet_mesh.h>
 
-#include "fill/cavity/work_mesh.h"
 #include "fill/front/front_task.h"
+#include "fill/front/work_mesh.h"
 
 #include <algorithm>
 #include <cstdint>

@@ -31,7 +31,7 @@ struct PartitionRule {
 /// Regions are apart: several small ones make a block, large ones are divided by themselves. Divides space by planes
 /// across the longer extents of the queue until no block has too many queued faces, or a plane would cut what too many
 /// of them reach. Blocks therefore follow the sizes of the elements, and hold alike amounts of work. The result depends
-/// on the front and the rule alone. These are not the cells of base/blocks: a face is a member of each block that it
+/// on the front and the rule alone. These are not the cells of base/shared: a face is a member of each block that it
 /// reaches into, and whether a plane cuts too many is asked of the reach of faces, not of points.
 std::vector<FrontBlock> partition_front(const FrontState& front, const PartitionRule& rule);
 

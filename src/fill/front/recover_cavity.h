@@ -3,7 +3,7 @@
 #include <octafront/run_context.h>
 #include <octafront/surface_mesh.h>
 
-#include "fill/cavity/excavation.h"
+#include "fill/front/excavation.h"
 
 namespace octafront {
 

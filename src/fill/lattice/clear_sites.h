@@ -4,8 +4,8 @@
 #include <octafront/size_field.h>
 #include <octafront/tet_mesh.h>
 
-#include "base/comm/shares.h"
 #include "base/geometry/triangle_tree.h"
+#include "base/shared/shares.h"
 #include "fill/lattice/graded_bcc.h"
 #include "fill/lattice/lattice_octree.h"
 

@@ -2,9 +2,6 @@
 
 #include <octafront/surface_mesh.h>
 
-#include "base/comm/marks.h"
-#include "base/comm/packing.h"
-#include "base/comm/shares.h"
 #include "base/core/buckets.h"
 #include "base/core/parallel.h"
 #include "base/core/shared_value.h"
@@ -12,6 +9,9 @@
 #include "base/mesh/complex.h"
 #include "base/mesh/face_table.h"
 #include "base/mesh/index_range.h"
+#include "base/shared/marks.h"
+#include "base/shared/packing.h"
+#include "base/shared/shares.h"
 #include "fill/lattice/clear_sites.h"
 #include "fill/lattice/graded_bcc.h"
 #include "fill/lattice/lattice_octree.h"

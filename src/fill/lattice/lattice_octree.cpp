@@ -4,7 +4,7 @@
 #include "base/geometry/doubtful_parts.h"
 #include "base/geometry/triangle_box.h"
 #include "fill/lattice/graded_bcc.h"
-#include "sizing/prediction/expected_tets.h"
+#include "sizing/field/expected_tets.h"
 
 #include <algorithm>
 #include <numeric>

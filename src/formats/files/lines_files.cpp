@@ -1,8 +1,8 @@
 #include <octafront/error.h>
 #include <octafront/io.h>
 
+#include "formats/files/formats.h"
 #include "formats/read/readers.h"
-#include "formats/table/formats.h"
 
 #include <algorithm>
 #include <array>

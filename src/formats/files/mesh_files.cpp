@@ -4,11 +4,11 @@
 
 #include "base/core/thread_limit.h"
 #include "base/mesh/renumber.h"
+#include "formats/files/formats.h"
+#include "formats/parts/division.h"
 #include "formats/parts/mixed_cells.h"
+#include "formats/parts/pieces.h"
 #include "formats/parts/raw_mesh.h"
-#include "formats/pieces/division.h"
-#include "formats/pieces/pieces.h"
-#include "formats/table/formats.h"
 
 #include <algorithm>
 #include <utility>

@@ -1,7 +1,7 @@
 #include <octafront/error.h>
 #include <octafront/io.h>
 
-#include "formats/table/formats.h"
+#include "formats/files/formats.h"
 
 #include <fmt/core.h>
 

@@ -9,7 +9,7 @@
 #include "base/core/groups.h"
 #include "base/core/utf8.h"
 #include "base/mesh/edge_nodes.h"
-#include "base/mesh/labels.h"
+#include "base/mesh/label_at.h"
 
 #include <algorithm>
 #include <array>

@@ -3,7 +3,7 @@
 #include "base/geometry/predicates.h"
 #include "base/mesh/adjacency.h"
 #include "base/mesh/face_table.h"
-#include "base/mesh/labels.h"
+#include "base/mesh/label_at.h"
 #include "base/mesh/renumber.h"
 #include "formats/parts/boundary.h"
 #include "formats/parts/mesh_parts.h"
@@ -115,6 +115,48 @@ void note_divided(RawMesh& raw) {
         "{} hexahedra were divided into tetrahedra, six each where none of their edges is a point", raw.hexahedra));
 }
 
+/// Of second order all or none.
+void check_mid_nodes(RawMesh& raw, const Input& input) {
+  auto& mids = raw.mid_nodes;
+  const auto lacks = [](const auto& row) { return has_none(row); };
+  if (mids.empty()) return;
+  if (mids.size() < raw.tets.size() || std::any_of(mids.begin(), mids.end(), lacks)) {
+    raw.notes.emplace_back("tetrahedra with and without mid-side nodes are mixed: all are taken as linear");
+    mids.clear();
+  }
+  enum : char { kUnused, kCorner };
+  std::vector<char> use(raw.points.size(), kUnused);
+  for (const Tet& t : raw.tets)
+    for (const VertexIndex v : t) use[v] = kCorner;
+  for (std::size_t t = 0; t < mids.size(); ++t)
+    for (const VertexIndex v : mids[t])
+      if (use[v] == kCorner)
+        input.fail(
+            fmt::format("the node {} (counted from 0) is a corner of one tetrahedron and a mid-side node of "
+                        "tetrahedron {}; the file is damaged: export it again",
+                        v, t));
+}
+
+/// Points that are gone are one behind all.
+std::vector<Triangle> clamped_triangles(const RawMesh& raw, std::size_t points) {
+  std::vector<Triangle> all = raw.triangles;
+  for (Triangle& t : all)
+    for (VertexIndex& v : t) v = std::min(v, static_cast<VertexIndex>(points));
+  return all;
+}
+
+/// Faces that are there several times, as sides of elements in several groups, become one.
+void merge_equal_triangles(RawMesh& raw, std::size_t points) {
+  const FaceTable table = face_table(points + 1, clamped_triangles(raw, points));
+  std::vector<std::uint32_t> first(raw.triangles.size());
+  table.for_each_group([&](const Triangle&, std::span<const FaceTable::Entry> same) {
+    for (const FaceTable::Entry& entry : same) first[entry.face] = same.front().face;
+  });
+  for (RawMesh::Group& group : raw.groups)
+    if (group.kind == Kind::kFaces)
+      for (std::uint32_t& m : group.members) m = first[m];
+}
+
 /// Brings a file's mesh in order, step by step.
 class Ordering {
  public:
@@ -122,9 +164,9 @@ class Ordering {
 
   MeshFile result() {
     require_tets();
-    for (const auto step : {&Ordering::match_wide_cells, &Ordering::check_mid_nodes, &Ordering::number_points,
-                            &Ordering::take_tets, &Ordering::take_wide_cells, &Ordering::take_faces,
-                            &Ordering::take_edges, &Ordering::take_sets, &Ordering::take_periods}) {
+    for (const auto step :
+         {&Ordering::match_wide_cells, &Ordering::number_points, &Ordering::take_tets, &Ordering::take_wide_cells,
+          &Ordering::take_faces, &Ordering::take_edges, &Ordering::take_sets, &Ordering::take_periods}) {
       input_.context.check();
       (this->*step)();
     }
@@ -146,27 +188,7 @@ class Ordering {
   void match_wide_cells() {
     divide_like_wide_cells(raw_);
     add_diagonals(raw_);
-  }
-
-  void check_mid_nodes() {
-    auto& mids = raw_.mid_nodes;
-    const auto lacks = [](const auto& row) { return has_none(row); };
-    if (mids.empty()) return;
-    if (mids.size() < raw_.tets.size() || std::any_of(mids.begin(), mids.end(), lacks)) {
-      raw_.notes.emplace_back("tetrahedra with and without mid-side nodes are mixed: all are taken as linear");
-      mids.clear();
-    }
-    enum : char { kUnused, kCorner };
-    std::vector<char> use(raw_.points.size(), kUnused);
-    for (const Tet& t : raw_.tets)
-      for (const VertexIndex v : t) use[v] = kCorner;
-    for (std::size_t t = 0; t < mids.size(); ++t)
-      for (const VertexIndex v : mids[t])
-        if (use[v] == kCorner)
-          input_.fail(
-              fmt::format("the node {} (counted from 0) is a corner of one tetrahedron and a mid-side node of "
-                          "tetrahedron {}; the file is damaged: export it again",
-                          v, t));
+    check_mid_nodes(raw_, input_);
   }
 
   /// Corners first, then mid-side nodes; unused ones go.
@@ -247,27 +269,8 @@ class Ordering {
 
   /// The triangles of the file where they are faces of the boundary, in their order, then what is missing; those
   /// between two tetrahedra are interfaces.
-  /// Faces that are there several times, as sides of elements in several groups, become one.
-  void merge_equal_triangles() {
-    const FaceTable table = face_table(mesh_.points.size() + 1, clamped_triangles());
-    std::vector<std::uint32_t> first(raw_.triangles.size());
-    table.for_each_group([&](const Triangle&, std::span<const FaceTable::Entry> same) {
-      for (const FaceTable::Entry& entry : same) first[entry.face] = same.front().face;
-    });
-    for (RawMesh::Group& group : raw_.groups)
-      if (group.kind == Kind::kFaces)
-        for (std::uint32_t& m : group.members) m = first[m];
-  }
-  /// Points that are gone are one behind all.
-  std::vector<Triangle> clamped_triangles() const {
-    std::vector<Triangle> all = raw_.triangles;
-    for (Triangle& t : all)
-      for (VertexIndex& v : t) v = std::min(v, static_cast<VertexIndex>(mesh_.points.size()));
-    return all;
-  }
-
   void take_faces() {
-    if (raw_.triangle_ref.empty()) merge_equal_triangles();
+    if (raw_.triangle_ref.empty()) merge_equal_triangles(raw_, mesh_.points.size());
     Numbered patches = raw_.triangle_ref.empty() ? by_groups(raw_.groups, Kind::kFaces, raw_.triangles.size())
                                                  : by_reference(raw_.triangle_ref, raw_.surface_names);
     // Without any group a triangle says no more than that it is there.

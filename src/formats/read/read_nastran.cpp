@@ -150,6 +150,97 @@ bool parse_real(std::string_view text, double& value) {
   return parse_number(usual, value) && std::isfinite(value);
 }
 
+/// Calls visit(edge, place of its mid-side node among the nodes) for the edges of a solid of second order.
+template <class Visit>
+void for_each_mid(std::span<const VertexIndex> nodes, const Visit& visit) {
+  constexpr std::array<std::array<std::size_t, 2>, 6> kTetrahedron{{{0, 1}, {1, 2}, {0, 2}, {0, 3}, {1, 3}, {2, 3}}};
+  const std::span<const std::array<std::size_t, 2>> edges =
+      nodes.size() == 10   ? std::span<const std::array<std::size_t, 2>>(kTetrahedron)
+      : nodes.size() == 15 ? std::span<const std::array<std::size_t, 2>>(kWedgeEdges)
+      : nodes.size() == 13 ? std::span<const std::array<std::size_t, 2>>(kPyramidEdges)
+                           : std::span<const std::array<std::size_t, 2>>();
+  for (std::size_t k = 0; k < edges.size(); ++k) {
+    const VertexIndex a = nodes[edges[k][0]], b = nodes[edges[k][1]];
+    visit(Edge{std::min(a, b), std::max(a, b)}, nodes.size() - edges.size() + k);
+  }
+}
+
+/// Numbers of nodes or elements in the file, and their places in the mesh.
+using Places = std::vector<std::pair<std::int64_t, std::uint32_t>>;
+
+/// The sets of the case control, and what comments say of them.
+class CaseSets {
+ public:
+  void call(std::int64_t number, std::string name, bool of_nodes) { names_[number] = {std::move(name), of_nodes}; }
+
+  /// SET 5 = 1, 4 THRU 9, ... over lines that end with a comma.
+  void read(Cards& cards) {
+    std::string text(cards.text());
+    while (trimmed(text).ends_with(',') && cards.has_line()) text.append(cards.take_line());
+    const std::size_t equals = text.find('=');
+    if (equals == std::string::npos) return;
+    const std::string_view number = trimmed(std::string_view(text).substr(4, equals - 4));
+    std::int64_t id = 0;
+    if (std::from_chars(number.data(), number.data() + number.size(), id).ec != std::errc()) return;
+    std::string_view rest = std::string_view(text).substr(equals + 1);
+    Ranges& ranges = ranges_[id];
+    while (!rest.empty()) {
+      const std::size_t comma = std::min(rest.find(','), rest.size());
+      std::string_view item = trimmed(rest.substr(0, comma));
+      rest.remove_prefix(std::min(rest.size(), comma + 1));
+      std::int64_t first = 0, last = 0;
+      const auto [stop, error] = std::from_chars(item.data(), item.data() + item.size(), first);
+      if (error != std::errc()) continue;  // "ALL", "EXCEPT"
+      last = first;
+      item = trimmed(item.substr(static_cast<std::size_t>(stop - item.data())));
+      if (item.starts_with("THRU")) {
+        item = trimmed(item.substr(4));
+        if (std::from_chars(item.data(), item.data() + item.size(), last).ec != std::errc()) last = first;
+      }
+      ranges.emplace_back(first, last);
+    }
+  }
+
+  void put_into(RawMesh& raw, Places& node_of, Places& tet_of, Places& triangle_of) const {
+    std::size_t nameless = 0;
+    for (const auto& [id, ranges] : ranges_) {
+      const auto found = names_.find(id);
+      // Without a name a set may be of anything.
+      nameless += found == names_.end();
+      if (found == names_.end()) continue;
+      const auto& [name, of_nodes] = found->second;
+      if (of_nodes) {
+        add_set(raw, name, Kind::kNodes, ranges, node_of);
+      } else {
+        add_set(raw, name, Kind::kElements, ranges, tet_of);
+        add_set(raw, name, Kind::kFaces, ranges, triangle_of);
+      }
+    }
+    if (nameless > 0)
+      raw.notes.push_back(
+          fmt::format("{} SET of the case control left out: the file does not say what they are of", nameless));
+  }
+
+ private:
+  using Ranges = std::vector<std::pair<std::int64_t, std::int64_t>>;
+
+  /// `of`: ids and places. Ranges may be far wider than the mesh.
+  static void add_set(RawMesh& raw, const std::string& name, Kind kind, Ranges ranges, Places& of) {
+    std::sort(of.begin(), of.end());
+    std::sort(ranges.begin(), ranges.end());
+    RawMesh::Group group{name, kind, {}};
+    std::size_t r = 0;
+    for (const auto& [id, place] : of) {
+      while (r < ranges.size() && ranges[r].second < id) ++r;
+      if (r < ranges.size() && ranges[r].first <= id) group.members.push_back(place);
+    }
+    if (!group.members.empty()) raw.groups.push_back(std::move(group));
+  }
+
+  std::map<std::int64_t, std::pair<std::string, bool>> names_;  ///< and whether it is of nodes
+  std::map<std::int64_t, Ranges> ranges_;
+};
+
 class Nastran {
  public:
   explicit Nastran(const Input& input) : input_(input) { raw_.format = "Nastran"; }
@@ -216,7 +307,7 @@ class Nastran {
     } else if (name == "CQUAD4" || name == "CQUAD8" || name == "CQUADR") {
       read_element(shells_, 4, 4);
     } else if (name.starts_with("SET ")) {
-      read_set();
+      sets_.read(*cards_);
     } else if (is_other_element(name)) {
       ++raw_.other_elements;
     } else if (name == "CHEXA") {
@@ -377,35 +468,7 @@ class Nastran {
     words.remove_prefix(static_cast<std::size_t>(stop - words.data()));
     if (of == "PSOLID") raw_.region_names[number] = name;
     if (of == "PSHELL") shell_names_[number] = name;
-    if (of == "SET") set_names_[number] = {name, trimmed(words) == "GRID"};
-  }
-
-  /// SET 5 = 1, 4 THRU 9, ... over lines that end with a comma.
-  void read_set() {
-    std::string text(cards_->text());
-    while (trimmed(text).ends_with(',') && cards_->has_line()) text.append(cards_->take_line());
-    const std::size_t equals = text.find('=');
-    if (equals == std::string::npos) return;
-    const std::string_view number = trimmed(std::string_view(text).substr(4, equals - 4));
-    std::int64_t id = 0;
-    if (std::from_chars(number.data(), number.data() + number.size(), id).ec != std::errc()) return;
-    std::string_view rest = std::string_view(text).substr(equals + 1);
-    std::vector<std::pair<std::int64_t, std::int64_t>>& ranges = sets_[id];
-    while (!rest.empty()) {
-      const std::size_t comma = std::min(rest.find(','), rest.size());
-      std::string_view item = trimmed(rest.substr(0, comma));
-      rest.remove_prefix(std::min(rest.size(), comma + 1));
-      std::int64_t first = 0, last = 0;
-      const auto [stop, error] = std::from_chars(item.data(), item.data() + item.size(), first);
-      if (error != std::errc()) continue;  // "ALL", "EXCEPT"
-      last = first;
-      item = trimmed(item.substr(static_cast<std::size_t>(stop - item.data())));
-      if (item.starts_with("THRU")) {
-        item = trimmed(item.substr(4));
-        if (std::from_chars(item.data(), item.data() + item.size(), last).ec != std::errc()) last = first;
-      }
-      ranges.emplace_back(first, last);
-    }
+    if (of == "SET") sets_.call(number, name, trimmed(words) == "GRID");
   }
 
   VertexIndex node(const Element& e, std::size_t k) const {
@@ -417,8 +480,6 @@ class Nastran {
     return v;
   }
 
-  using Places = std::vector<std::pair<std::int64_t, std::uint32_t>>;
-
   /// The nodes of a solid, a wedge or pyramid in our order.
   std::span<const VertexIndex> nodes_of(const Element& e, std::array<VertexIndex, 15>& room) const {
     std::array<VertexIndex, 15> nodes;
@@ -427,21 +488,6 @@ class Nastran {
     if (e.count != 4 && e.count != 8 && e.count != 10) return in_our_order(all, kCgnsWide, room);
     std::copy(all.begin(), all.end(), room.begin());
     return std::span(room).first(e.count);
-  }
-
-  /// Calls visit(edge, place of its mid-side node in nodes_of()) for the edges of a solid of second order.
-  template <class Visit>
-  static void for_each_mid(std::span<const VertexIndex> nodes, const Visit& visit) {
-    constexpr std::array<std::array<std::size_t, 2>, 6> kTetrahedron{{{0, 1}, {1, 2}, {0, 2}, {0, 3}, {1, 3}, {2, 3}}};
-    const std::span<const std::array<std::size_t, 2>> edges =
-        nodes.size() == 10   ? std::span<const std::array<std::size_t, 2>>(kTetrahedron)
-        : nodes.size() == 15 ? std::span<const std::array<std::size_t, 2>>(kWedgeEdges)
-        : nodes.size() == 13 ? std::span<const std::array<std::size_t, 2>>(kPyramidEdges)
-                             : std::span<const std::array<std::size_t, 2>>();
-    for (std::size_t k = 0; k < edges.size(); ++k) {
-      const VertexIndex a = nodes[edges[k][0]], b = nodes[edges[k][1]];
-      visit(Edge{std::min(a, b), std::max(a, b)}, nodes.size() - edges.size() + k);
-    }
   }
 
   /// A mid-side node that an element leaves out is that of a neighbour, else in the middle.
@@ -491,7 +537,7 @@ class Nastran {
   void resolve() {
     for (const Grid& grid : grids_) raw_.points.push_back(place_of(grid));
     find_blank_mids();
-    std::vector<std::pair<std::int64_t, std::uint32_t>> tet_of, triangle_of, node_of;
+    Places tet_of, triangle_of, node_of;
     std::int64_t last_solid = 0, first_shell = std::numeric_limits<std::int64_t>::max();
     for (const Element& e : solids_) {
       add_solid(e, tet_of);
@@ -504,39 +550,8 @@ class Nastran {
     for (const auto& [property, name] : shell_names_) raw_.surface_names[property - shift] = name;
     if (made_mids_ > 0)
       raw_.notes.push_back(fmt::format("{} mid-side nodes that elements leave out were put in the middle", made_mids_));
-    std::size_t nameless = 0;
-    for (const auto& [id, ranges] : sets_) {
-      const auto found = set_names_.find(id);
-      // Without a name a set may be of anything.
-      nameless += found == set_names_.end();
-      if (found == set_names_.end()) continue;
-      const auto& [name, of_nodes] = found->second;
-      if (of_nodes) {
-        if (node_of.empty())
-          for (std::uint32_t v = 0; v < grids_.size(); ++v) node_of.emplace_back(grids_[v].id, v);
-        add_set(name, Kind::kNodes, ranges, node_of);
-      } else {
-        add_set(name, Kind::kElements, ranges, tet_of);
-        add_set(name, Kind::kFaces, ranges, triangle_of);
-      }
-    }
-    if (nameless > 0)
-      raw_.notes.push_back(
-          fmt::format("{} SET of the case control left out: the file does not say what they are of", nameless));
-  }
-
-  /// `of`: ids and places. Ranges may be far wider than the mesh.
-  void add_set(const std::string& name, Kind kind, std::vector<std::pair<std::int64_t, std::int64_t>> ranges,
-               std::vector<std::pair<std::int64_t, std::uint32_t>>& of) {
-    std::sort(of.begin(), of.end());
-    std::sort(ranges.begin(), ranges.end());
-    RawMesh::Group group{name, kind, {}};
-    std::size_t r = 0;
-    for (const auto& [id, place] : of) {
-      while (r < ranges.size() && ranges[r].second < id) ++r;
-      if (r < ranges.size() && ranges[r].first <= id) group.members.push_back(place);
-    }
-    if (!group.members.empty()) raw_.groups.push_back(std::move(group));
+    for (std::uint32_t v = 0; v < grids_.size(); ++v) node_of.emplace_back(grids_[v].id, v);
+    sets_.put_into(raw_, node_of, tet_of, triangle_of);
   }
 
   const Input& input_;
@@ -551,8 +566,7 @@ class Nastran {
   std::uint64_t made_mids_ = 0;
   std::vector<Element> solids_, shells_;
   std::map<std::int64_t, std::string> shell_names_;
-  std::map<std::int64_t, std::pair<std::string, bool>> set_names_;  ///< and whether it is of nodes
-  std::map<std::int64_t, std::vector<std::pair<std::int64_t, std::int64_t>>> sets_;
+  CaseSets sets_;
 };
 
 }  // namespace

@@ -6,8 +6,8 @@
 //   part                            of cells: whose own they are
 
 #include "formats/parts/mesh_parts.h"
+#include "formats/parts/pieces.h"
 #include "formats/parts/vtk_cells.h"
-#include "formats/pieces/pieces.h"
 
 #include <cstdint>
 #include <filesystem>

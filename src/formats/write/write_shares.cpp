@@ -1,10 +1,10 @@
 #include <octafront/share_files.h>
 
-#include "base/comm/packing.h"
 #include "base/core/thread_limit.h"
+#include "base/shared/packing.h"
 #include "formats/containers/atomic_file.h"
 #include "formats/parts/mesh_output.h"
-#include "formats/pieces/share_piece.h"
+#include "formats/parts/share_piece.h"
 #include "formats/write/vtk_pieces.h"
 #include "formats/write/writers.h"
 

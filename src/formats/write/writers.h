@@ -7,7 +7,7 @@
 #include "formats/containers/atomic_file.h"
 #include "formats/parts/mesh_output.h"
 #include "formats/parts/mesh_parts.h"
-#include "formats/pieces/pieces.h"
+#include "formats/parts/pieces.h"
 
 #include <cstdint>
 #include <filesystem>

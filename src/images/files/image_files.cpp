@@ -3,11 +3,11 @@
 #include "formats/containers/file_head.h"
 #include "formats/containers/named_file.h"
 #include "formats/containers/scanner.h"
-#include "formats/table/formats.h"
+#include "formats/files/formats.h"
 #include "images/files/byte_source.h"
 #include "images/files/dicom/series.h"
+#include "images/files/image_readers.h"
 #include "images/files/masks.h"
-#include "images/files/readers.h"
 
 #include <algorithm>
 #include <array>

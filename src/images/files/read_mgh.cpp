@@ -3,7 +3,7 @@
 
 #include "images/files/byte_source.h"
 #include "images/files/grids.h"
-#include "images/files/readers.h"
+#include "images/files/image_readers.h"
 
 #include <algorithm>
 #include <bit>

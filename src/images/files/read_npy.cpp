@@ -4,7 +4,7 @@
 #include "formats/containers/scanner.h"
 #include "images/files/byte_source.h"
 #include "images/files/grids.h"
-#include "images/files/readers.h"
+#include "images/files/image_readers.h"
 
 #include <map>
 #include <optional>

@@ -3,8 +3,8 @@
 
 #include "formats/containers/scanner.h"
 #include "images/files/grids.h"
+#include "images/files/image_readers.h"
 #include "images/files/masks.h"
-#include "images/files/readers.h"
 #include "images/files/slice_files.h"
 
 #include <algorithm>

@@ -2,7 +2,7 @@
 //   {"size": [256, 256, 108], "type": "int16", "spacing": [0.957, 0.957, 1.5]}
 
 #include "images/files/grids.h"
-#include "images/files/readers.h"
+#include "images/files/image_readers.h"
 #include "images/files/slice_files.h"
 
 #include <algorithm>

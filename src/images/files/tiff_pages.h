@@ -2,7 +2,7 @@
 
 #include <octafront/image.h>
 
-#include "images/files/readers.h"
+#include "images/files/image_readers.h"
 #include "images/files/voxels.h"
 
 #include <array>

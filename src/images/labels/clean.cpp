@@ -7,6 +7,7 @@
 #include "base/core/wording.h"
 #include "images/labels/closing.h"
 #include "images/labels/runs.h"
+#include "images/labels/small_contacts.h"
 
 #include <algorithm>
 #include <cmath>
@@ -161,9 +162,33 @@ void note_holes(const std::vector<Pieces::Piece>& given, double below, LabelImag
       fmt::format("holes below {:.6g}: {} filled ({})", below, given.size(), counted(voxels, "voxel")));
 }
 
+/// "219 spots (342 voxels): "gray" and "skull" 120, ...".
+void note_contacts(const image::ClearedContacts& cleared, double below, LabelImage& image) {
+  std::vector<std::pair<std::uint64_t, std::pair<std::uint16_t, std::uint16_t>>> pairs;
+  std::uint64_t all = 0;
+  for (const auto& [pair, n] : cleared.spots) {
+    pairs.emplace_back(n, pair);
+    all += n;
+  }
+  if (all == 0) return;
+  std::stable_sort(pairs.begin(), pairs.end(), [](const auto& p, const auto& q) { return p.first > q.first; });
+  const auto name = [&](std::uint16_t r) {
+    return r < image.labels.size() ? fmt::format("\"{}\"", image.labels[r].name) : std::string("the outside");
+  };
+  constexpr std::size_t kMostNamed = 3;
+  std::string list;
+  for (std::size_t p = 0; p < std::min(kMostNamed, pairs.size()); ++p)
+    list += fmt::format("{}{} and {} {}", p == 0 ? "" : ", ", name(pairs[p].second.first), name(pairs[p].second.second),
+                        pairs[p].first);
+  if (pairs.size() > kMostNamed) list += fmt::format(", {} other pairs", pairs.size() - kMostNamed);
+  image.notes.push_back(fmt::format("contacts below {:.4g}: {} cleared, by {}: {}; `contacts` keep leaves them", below,
+                                    counted(all, "spot"), counted(cleared.voxels, "voxel"), list));
+}
+
 void check(const CleanOptions& options) {
-  if (!(options.islands >= 0) || !(options.holes >= 0))
-    throw OptionError("volumes of islands and holes are at least 0 (`islands`, `holes`)");
+  if (!(options.islands >= 0) || !(options.holes >= 0) || !(options.contacts >= 0))
+    throw OptionError(
+        "volumes of islands and holes, areas of contacts are at least 0 (`islands`, `holes`, `contacts`)");
   constexpr std::uint32_t kMostClosing = 64;
   if (options.closing > kMostClosing)
     throw OptionError(fmt::format("`close_voxels` is {}; at most {} can be closed", options.closing, kMostClosing));
@@ -191,6 +216,8 @@ LabelImage cleaned(const LabelImage& image, const CleanOptions& options, const R
   };
   give(options.islands, &Pieces::choose_islands, note_islands);
   give(options.holes, &Pieces::choose_holes, note_holes);
+  if (options.contacts > 0)
+    note_contacts(image::clear_small_contacts(out, std::sqrt(options.contacts), context), options.contacts, out);
   return out;
 }
 

@@ -6,12 +6,12 @@
 #include "base/geometry/live_triangles.h"
 #include "base/geometry/measures.h"
 #include "base/geometry/predicates.h"
-#include "improve/boundary/flat_walls.h"
-#include "improve/boundary/input_force.h"
 #include "improve/passes/fewest_poor.h"
 #include "improve/passes/passes.h"
 #include "improve/passes/poor_tets.h"
 #include "improve/passes/star_edit.h"
+#include "improve/shape/flat_walls.h"
+#include "improve/shape/input_force.h"
 
 #include <algorithm>
 #include <optional>

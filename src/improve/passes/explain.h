@@ -2,8 +2,8 @@
 
 #include <octafront/run_context.h>
 
-#include "improve/boundary/input_force.h"
 #include "improve/shape/edit_mesh.h"
+#include "improve/shape/input_force.h"
 
 #include <array>
 #include <cstdint>

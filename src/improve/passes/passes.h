@@ -7,7 +7,7 @@
 
 #include <octafront/run_context.h>
 
-#include "improve/boundary/boundary_guide.h"
+#include "improve/shape/boundary_guide.h"
 #include "improve/shape/edit_mesh.h"
 
 #include <cstdint>

@@ -1,12 +1,12 @@
 #include "improve/schedule/raise_flat.h"
 
-#include "base/comm/marks.h"
-#include "base/comm/packing.h"
 #include "base/core/groups.h"
 #include "base/core/parallel.h"
 #include "base/core/shared_value.h"
 #include "base/geometry/live_triangles.h"
 #include "base/geometry/measures.h"
+#include "base/shared/marks.h"
+#include "base/shared/packing.h"
 #include "improve/passes/fewest_poor.h"
 
 #include <algorithm>

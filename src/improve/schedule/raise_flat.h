@@ -5,8 +5,8 @@
 #include "base/core/stage.h"
 #include "base/geometry/leeway.h"
 #include "base/shared/shared_tets.h"
-#include "improve/boundary/flat_walls.h"
-#include "improve/boundary/input_force.h"
+#include "improve/shape/flat_walls.h"
+#include "improve/shape/input_force.h"
 
 namespace octafront {
 

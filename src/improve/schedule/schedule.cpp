@@ -3,18 +3,18 @@
 #include <octafront/option_table.h>
 #include <octafront/quality.h>
 
-#include "base/comm/packing.h"
 #include "base/core/elementary.h"
 #include "base/core/fixed_point.h"
 #include "base/core/function_ref.h"
 #include "base/core/parallel.h"
 #include "base/core/validate.h"
 #include "base/geometry/predicates.h"
+#include "base/shared/packing.h"
 #include "improve/passes/explain.h"
 #include "improve/passes/fewest_poor.h"
 #include "improve/passes/passes.h"
-#include "improve/pieces/pieces.h"
 #include "improve/schedule/kept_labels.h"
+#include "improve/schedule/mesh_of_pieces.h"
 
 #include <algorithm>
 #include <atomic>

@@ -3,17 +3,16 @@
 // improve/schedule: better elements in the same body. Takes a valid tetrahedral mesh, leaves a valid one: vertices
 // have moved, edges and faces have been exchanged; those of the boundary only where the surface is given on which
 // they may. Single passes are in passes.h, their order in schedule.cpp, what an element is worth in shape.h, the mesh
-// they work on in edit_mesh.h, how a mesh is
-// divided among those who work on it in pieces.h. What is flat even then gets room off the surface, at the very end:
-// raise_flat.h.
+// they work on in edit_mesh.h, how a mesh is divided among those who work on it in mesh_of_pieces.h. What is flat even
+// then gets room off the surface, at the very end: raise_flat.h.
 
 #include <octafront/options.h>
 #include <octafront/size_field.h>
 #include <octafront/tet_mesh.h>
 
 #include "base/core/stage.h"
-#include "improve/boundary/boundary_input.h"
-#include "improve/pieces/pieces.h"
+#include "improve/schedule/mesh_of_pieces.h"
+#include "improve/shape/boundary_input.h"
 
 namespace octafront {
 

@@ -1,8 +1,8 @@
 #pragma once
 
-#include "layers/columns/columns.h"
-#include "layers/columns/regions.h"
-#include "layers/growth/walls.h"
+#include "layers/growth/columns.h"
+#include "layers/growth/layered_walls.h"
+#include "layers/growth/region_walls.h"
 
 namespace octafront::layers {
 

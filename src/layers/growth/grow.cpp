@@ -3,8 +3,8 @@
 #include "layers/growth/bare_patches.h"
 #include "layers/growth/directions.h"
 #include "layers/growth/heights.h"
+#include "layers/growth/layered_walls.h"
 #include "layers/growth/soundness.h"
-#include "layers/growth/walls.h"
 
 #include <algorithm>
 #include <cmath>

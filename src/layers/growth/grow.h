@@ -5,8 +5,8 @@
 // region can be meshed like any other body.
 
 #include "base/core/stage.h"
-#include "layers/columns/columns.h"
-#include "layers/columns/regions.h"
+#include "layers/growth/columns.h"
+#include "layers/growth/region_walls.h"
 
 #include <cstdint>
 #include <vector>

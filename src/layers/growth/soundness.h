@@ -1,7 +1,7 @@
 #pragma once
 
-#include "layers/columns/columns.h"
-#include "layers/growth/walls.h"
+#include "layers/growth/columns.h"
+#include "layers/growth/layered_walls.h"
 
 #include <vector>
 

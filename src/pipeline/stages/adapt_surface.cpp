@@ -7,7 +7,7 @@
 
 #include "adapt/metric/background.h"
 #include "adapt/metric/expected.h"
-#include "adapt/sheet/adapt_sheet.h"
+#include "adapt/schedule/adapt_sheet.h"
 #include "base/geometry/self_intersection.h"
 #include "base/mesh/edge_table.h"
 #include "base/mesh/known_surface.h"
@@ -15,8 +15,8 @@
 #include "pipeline/stages/adapting.h"
 #include "pipeline/stages/requirements.h"
 #include "pipeline/stages/stages.h"
-#include "sizing/search/make_size_field.h"
 #include "sizing/sources/check_size_options.h"
+#include "sizing/sources/make_size_field.h"
 
 #include <array>
 #include <map>

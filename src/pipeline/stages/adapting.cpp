@@ -7,9 +7,9 @@
 #include "improve/schedule/without_bridges.h"
 #include "pipeline/stages/stages.h"
 #include "pipeline/stages/true_shape.h"
-#include "sizing/prediction/affordable.h"
-#include "sizing/search/make_size_field.h"
+#include "sizing/field/affordable.h"
 #include "sizing/sources/check_size_options.h"
+#include "sizing/sources/make_size_field.h"
 #include "sizing/sources/named_sizes.h"
 
 #include <algorithm>

@@ -3,8 +3,8 @@
 #include <octafront/error.h>
 #include <octafront/options.h>
 
-#include "base/comm/comm.h"
-#include "base/comm/hashing.h"
+#include "base/shared/comm.h"
+#include "base/shared/hashing.h"
 #include "pipeline/stages/stages.h"
 
 namespace octafront {

@@ -4,8 +4,8 @@
 #include <octafront/limits.h>
 #include <octafront/split.h>
 
-#include "base/comm/packing.h"
 #include "base/core/wording.h"
+#include "base/shared/packing.h"
 #include "base/shared/shared_tets.h"
 #include "pipeline/inside/fins.h"
 #include "pipeline/stages/agreement.h"

@@ -15,8 +15,8 @@
 #include "pipeline/stages/kept_volumes.h"
 #include "pipeline/stages/requirements.h"
 #include "pipeline/stages/stages.h"
-#include "soup/defects/examine.h"
-#include "surface/check/surface_check.h"
+#include "soup/tidy/examine.h"
+#include "surface/remeshing/surface_check.h"
 
 #include <algorithm>
 #include <map>

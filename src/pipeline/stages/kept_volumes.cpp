@@ -169,8 +169,8 @@ void keep_surface_volumes(const Prepared& input, Remeshed& made, const Run& run,
   // Opposite faces of a cell stay copies of each other.
   if (!run.options.surface.keep_volumes || !run.options.periodic.empty()) return;
   const std::uint64_t moved =
-      remeshing::keep_volumes_clean(made.surface, made.features, volumes_of_regions(input.surface.mesh()),
-                                    vertices_on_faces(made.surface, input.cell), stage.context());
+      surface::keep_volumes_clean(made.surface, made.features, volumes_of_regions(input.surface.mesh()),
+                                  vertices_on_faces(made.surface, input.cell), stage.context());
   stage.count("vertices moved for volumes", static_cast<double>(moved));
 }
 
@@ -185,13 +185,18 @@ void keep_mesh_volumes(const Prepared& input, const std::vector<double>& wanted,
     ElementsBeside beside(filled.mesh, surface);
     const TooFar too_far = [&] {
       std::vector<VertexIndex> back = beside.spoilt();
-      return back.empty() ? remeshing::vertices_in_crossings(surface) : back;
+      return back.empty() ? surface::vertices_in_crossings(surface) : back;
     };
     const std::uint64_t moved = keep_volumes(surface, filled.boundary.features, wanted, too_far,
                                              vertices_on_faces(surface, input.cell), stage.context());
     std::copy(surface.points.begin(), surface.points.end(), filled.mesh.points.begin());
     stage.count("vertices moved for volumes", static_cast<double>(moved));
   });
+}
+
+void describe_needed(double size, Report& report) {
+  constexpr double kRegularTet = 0.11785113;  // its volume over the cube of its edge
+  for (RegionSummary& region : report.regions) region.needed = region.volume / (kRegularTet * size * size * size);
 }
 
 void describe_input_volumes(const Prepared& input, const Filled& filled, Report& report) {

@@ -2,10 +2,10 @@
 
 #include <octafront/tet_mesh.h>
 
-#include "base/comm/packing.h"
 #include "base/core/parallel.h"
 #include "base/core/utf8.h"
 #include "base/mesh/quality_sum.h"
+#include "base/shared/packing.h"
 #include "base/shared/shared_tets.h"
 
 #include <algorithm>

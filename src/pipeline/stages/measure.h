@@ -4,7 +4,7 @@
 #include <octafront/size_field.h>
 #include <octafront/tet_mesh.h>
 
-#include "base/comm/comm.h"
+#include "base/shared/comm.h"
 
 namespace octafront {
 

@@ -3,8 +3,8 @@
 #include <octafront/error.h>
 
 #include "fill/classic/fill_classic.h"
+#include "fill/front/bind_to_surface.h"
 #include "fill/front/fill.h"
-#include "fill/front/regions.h"
 #include "fill/recovery/recover.h"
 
 namespace octafront {

@@ -9,8 +9,8 @@
 #include "base/mesh/edge_nodes.h"
 #include "pipeline/stages/methods.h"
 #include "pipeline/stages/stages.h"
-#include "soup/defects/examine.h"
 #include "soup/periods/periods.h"
+#include "soup/tidy/examine.h"
 
 #include <algorithm>
 #include <map>

@@ -4,10 +4,10 @@
 #include <octafront/report.h>
 #include <octafront/run_context.h>
 
-#include "base/comm/comm.h"
 #include "base/core/stage.h"
 #include "base/core/stage_timer.h"
 #include "base/core/thread_limit.h"
+#include "base/shared/comm.h"
 
 #include <exception>
 #include <utility>

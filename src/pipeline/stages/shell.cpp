@@ -7,7 +7,7 @@
 #include "layers/through/through.h"
 #include "pipeline/stages/methods.h"
 #include "pipeline/stages/stages.h"
-#include "sizing/prediction/expected_tets.h"
+#include "sizing/field/expected_tets.h"
 
 #include <utility>
 #include <vector>

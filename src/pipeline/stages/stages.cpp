@@ -11,12 +11,12 @@
 #include "base/mesh/complex_patches.h"
 #include "base/mesh/feature_patches.h"
 #include "base/shared/shared_defects.h"
-#include "fill/stuffing/stuff.h"
-#include "improve/boundary/slide_interfaces.h"
-#include "improve/boundary/slide_pairs.h"
+#include "fill/lattice/stuff.h"
 #include "improve/curved/curved.h"
 #include "improve/schedule/raise_flat.h"
 #include "improve/schedule/schedule.h"
+#include "improve/shape/slide_interfaces.h"
+#include "improve/shape/slide_pairs.h"
 #include "pipeline/stages/follow_boundary.h"
 #include "pipeline/stages/kept_shape.h"
 #include "pipeline/stages/kept_volumes.h"
@@ -24,15 +24,15 @@
 #include "pipeline/stages/methods.h"
 #include "pipeline/stages/periodic.h"
 #include "pipeline/stages/shell.h"
-#include "sizing/prediction/expected_tets.h"
-#include "sizing/search/budget.h"
-#include "sizing/search/make_size_field.h"
+#include "sizing/field/expected_tets.h"
+#include "sizing/sources/budget.h"
 #include "sizing/sources/check_size_options.h"
 #include "sizing/sources/curvature.h"
 #include "sizing/sources/kept_surface.h"
+#include "sizing/sources/make_size_field.h"
 #include "sizing/sources/named_sizes.h"
-#include "soup/defects/examine.h"
-#include "surface/folds/unfold.h"
+#include "soup/tidy/examine.h"
+#include "surface/remeshing/unfold.h"
 
 #include <algorithm>
 #include <cmath>
@@ -217,7 +217,7 @@ std::vector<double> smooth_detail(Examined& found, Run& run) {
   const double tolerance = detail_tolerance(surface, run.options, kUnfolded);
   if (tolerance == 0) return {};
   return run.stage("detail", [&](const Stage& stage) {
-    auto unfolded = remeshing::unfold(surface, found.edges, tolerance, stage.context());
+    auto unfolded = surface::unfold(surface, found.edges, tolerance, stage.context());
     stage.count("folds mended", unfolded ? static_cast<double>(unfolded->mended.operations) : 0);
     if (!unfolded) return std::vector<double>{};
     const double change = change_of_volume(enclosed_volume(unfolded->surface), run.report.input_volume);
@@ -388,10 +388,11 @@ SizeField choose_sizes(const Prepared& input, Run& run) {
     note_misplaced_sizes(input.surface.mesh(), size, stage);
     return keeps_surface(run.options)
                ? size_field_of_surface(input.surface, size, stage)
-               : make_size_field(input.surface, size, stage,
-                                 {input.bound, input.closed.is_in_it, run.options.surface.volume_tolerance.has_value(),
-                                  input.geometry ? kTurnsOfGeometry : 0, run.options.order > 1},
-                                 budget);
+               : make_size_field(
+                     input.surface, size, stage,
+                     {input.bound, input.closed.is_in_it, run.options.surface.volume_tolerance.has_value(),
+                      input.geometry ? kTurnsOfGeometry : 0, run.options.order > 1, run.options.surface.finest},
+                     budget);
   });
   const MethodTraits& method = traits_of(run.options.method);
   const SurfaceMesh& surface = input.surface.mesh();
@@ -413,7 +414,7 @@ Remeshed triangulate(const Prepared& input, const SizeField& sizes, Run& run) {
     const bool is_coarse = input.geometry != nullptr && has_automatic_sizes(run.options);
     const FrontLimits limits{.slack = slack,
                              .budget = budget,
-                             .least = size.min_size.value_or(0),
+                             .least = std::max(size.min_size.value_or(0), surface.finest),
                              .narrowest_strip = kNarrowOfGiven * size.size.value_or(0),
                              .rise = size.gradation ? 0
                                      : is_coarse    ? kRiseFromStripsOfGeometry

@@ -16,7 +16,7 @@
 #include "base/mesh/known_surface.h"
 #include "base/mesh/periodic_cell.h"
 #include "base/shared/shared_tets.h"
-#include "fill/stuffing/implicit_domain.h"
+#include "fill/lattice/implicit_domain.h"
 #include "pipeline/stages/closed_patch.h"
 #include "pipeline/stages/layered.h"
 #include "pipeline/stages/run.h"

@@ -123,13 +123,14 @@ std::string second_order_lines(const SecondOrderSummary& s) {
 constexpr std::size_t kMostRegionLines = 24;
 
 std::string region_lines(const std::vector<RegionSummary>& regions) {
-  std::string out =
-      fmt::format("{:<32}{:>12}{:>14}{:>12}{:>12}\n", "region", "tetrahedra", "volume", "mean beta", "least beta");
+  const bool has_size = std::ranges::any_of(regions, [](const RegionSummary& r) { return r.needed > 0; });
+  std::string out = fmt::format("{:<32}{:>12}{:>14}{:>12}{:>12}{}\n", "region", "tetrahedra", "volume", "mean beta",
+                                "least beta", has_size ? "   by size" : "");
   for (std::size_t r = 0; r < std::min(regions.size(), kMostRegionLines); ++r) {
     const RegionSummary& region = regions[r];
-    out +=
-        fmt::format("  {:<30.30}{:>12}{:>14.6g}{:>12.4f}{:>12.4f}\n", region_label(region.name, r, regions.size()),
-                    grouped(region.quality.elements), region.volume, region.quality.beta_mean, region.quality.beta_min);
+    out += fmt::format("  {:<30.30}{:>12}{:>14.6g}{:>12.4f}{:>12.4f}{}\n", region_label(region.name, r, regions.size()),
+                       grouped(region.quality.elements), region.volume, region.quality.beta_mean,
+                       region.quality.beta_min, has_size ? fmt::format("{:>10.0f}", region.needed) : "");
     if (region.true_volume > 0)
       out += fmt::format("  {:<30}{:>12}{:>14.6g} ({:+.3f} %)\n", "  of the CAD solid", "", region.true_volume,
                          percent_off(region.volume + region.layers_volume, region.true_volume));

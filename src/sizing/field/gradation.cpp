@@ -57,76 +57,23 @@ struct Cut {
   double value, source;
 };
 
-class Grader {
+/// The leaves of each corner, as 8 * leaf + which of its corners.
+Groups<> leaves_of_corners(const Octree& tree, const OctreeCorners& corners) {
+  return group_by_owner(corners.size(), static_cast<std::uint32_t>(8 * tree.size()),
+                        [&](std::uint32_t i) { return corners.of_leaf[i / 8][i % 8]; });
+}
+
+/// Shortest paths with sources everywhere; hanging corners take part like others here.
+class PathSweep {
  public:
-  Grader(const Octree& tree, const OctreeCorners& corners, GradedCorners caps, double gradation, double ceiling)
-      : tree_(tree),
-        corners_(corners),
-        slope_(gradation * kSafety),
-        value_(std::move(caps.value)),
-        source_(std::move(caps.source)) {
-    for (std::size_t c = 0; c < value_.size(); ++c)
-      if (!(value_[c] < ceiling)) value_[c] = source_[c] = ceiling;
-  }
-
-  GradedCorners run(const RunContext& context) {
-    sweep_shortest_paths(context);
-    order_leaves();
-    collect_dependents();
-    dirty_.assign(tree_.size(), 1);
-    for (int round = 1; round <= kMostRounds; ++round) {
-      context.check();
-      if (!cut_steep_leaves()) break;
-    }
-    shrink();
-    GradedCorners result{std::vector<double>(value_.size()), std::vector<double>(value_.size())};
-    parallel_for(value_.size(), [&](std::size_t i) {
-      const auto c = static_cast<std::uint32_t>(i);
-      result.value[c] = at(value_, c);
-      result.source[c] = std::min(at(source_, c), result.value[c]);
-    });
-    return result;
-  }
-
- private:
-  /// `of_free(corner)`: what free corners have.
-  template <class OfFree>
-  double at_corner(std::uint32_t corner, const OfFree& of_free) const {
-    if (!corners_.hangs(corner)) return of_free(corner);
-    double sum = 0;
-    for (const OctreeCorners::Share& s : corners_.shares_of(corner)) sum += s.weight * of_free(s.corner);
-    return sum;
-  }
-  double at(const std::vector<double>& of_free, std::uint32_t corner) const {
-    return at_corner(corner, [&](std::uint32_t c) { return of_free[c]; });
-  }
-
-  // --- shortest paths with sources everywhere; hanging corners take part like others here
-
-  void collect_leaves() {
-    leaves_ = group_by_owner(corners_.size(), static_cast<std::uint32_t>(8 * tree_.size()),
-                             [&](std::uint32_t i) { return corners_.of_leaf[i / 8][i % 8]; });
-  }
-
-  /// Calls visit(corner, value) for each corner that an edge of a leaf joins to `from` and that its value limits.
-  template <class Visit>
-  void for_each_limited(std::uint32_t from, Visit&& visit) {
-    for (const std::uint32_t i : leaves_[from]) {
-      const std::uint32_t leaf = i / 8, k = i % 8;
-      const double rise = slope_ / (1u << tree_.leaf(leaf).level());
-      for (std::uint32_t d = 1; d < 8; d *= 2) {
-        const std::uint32_t to = corners_.of_leaf[leaf][k ^ d];
-        const double v = SharedValue(value_[from]).load() + rise;
-        if (v < SharedValue(value_[to]).load()) visit(to, v);
-      }
-    }
-  }
+  PathSweep(const Octree& tree, const OctreeCorners& corners, const Groups<>& leaves, double slope,
+            std::span<double> value, std::span<double> source)
+      : tree_(tree), corners_(corners), leaves_(leaves), slope_(slope), value_(value), source_(source) {}
 
   /// Each corner that was lowered lowers its neighbours in turn, until none is left: in any order the least sums
   /// remain.
-  void sweep_shortest_paths(const RunContext& context) {
-    collect_leaves();
-    const std::vector<double> caps = value_;
+  void run(const RunContext& context) {
+    const std::vector<double> caps(value_.begin(), value_.end());
     std::vector<std::uint32_t> lowered = parallel_collect<std::uint32_t>(
         value_.size(), kCornersAtOnce, [&](std::size_t begin, std::size_t end, std::vector<std::uint32_t>& out) {
           for (auto c = static_cast<std::uint32_t>(begin); c < end; ++c) {
@@ -142,6 +89,21 @@ class Grader {
       parallel_for(lowered.size(), [&](std::size_t i) { waits[lowered[i]] = 0; });
     }
     take_sources(caps);
+  }
+
+ private:
+  /// Calls visit(corner, value) for each corner that an edge of a leaf joins to `from` and that its value limits.
+  template <class Visit>
+  void for_each_limited(std::uint32_t from, Visit&& visit) {
+    for (const std::uint32_t i : leaves_[from]) {
+      const std::uint32_t leaf = i / 8, k = i % 8;
+      const double rise = slope_ / (1u << tree_.leaf(leaf).level());
+      for (std::uint32_t d = 1; d < 8; d *= 2) {
+        const std::uint32_t to = corners_.of_leaf[leaf][k ^ d];
+        const double v = SharedValue(value_[from]).load() + rise;
+        if (v < SharedValue(value_[to]).load()) visit(to, v);
+      }
+    }
   }
 
   /// Returns those that it lowers, each once. `waits`: whether a corner is among them.
@@ -197,7 +159,57 @@ class Grader {
     return best;
   }
 
-  // --- cuts
+  const Octree& tree_;
+  const OctreeCorners& corners_;
+  const Groups<>& leaves_;
+  double slope_;
+  std::span<double> value_, source_;
+};
+
+class Grader {
+ public:
+  Grader(const Octree& tree, const OctreeCorners& corners, GradedCorners caps, double gradation, double ceiling)
+      : tree_(tree),
+        corners_(corners),
+        slope_(gradation * kSafety),
+        value_(std::move(caps.value)),
+        source_(std::move(caps.source)),
+        leaves_(leaves_of_corners(tree, corners)) {
+    for (std::size_t c = 0; c < value_.size(); ++c)
+      if (!(value_[c] < ceiling)) value_[c] = source_[c] = ceiling;
+  }
+
+  GradedCorners run(const RunContext& context) {
+    PathSweep(tree_, corners_, leaves_, slope_, value_, source_).run(context);
+    order_leaves();
+    collect_dependents();
+    dirty_.assign(tree_.size(), 1);
+    for (int round = 1; round <= kMostRounds; ++round) {
+      context.check();
+      if (!cut_steep_leaves()) break;
+    }
+    shrink();
+    GradedCorners result{std::vector<double>(value_.size()), std::vector<double>(value_.size())};
+    parallel_for(value_.size(), [&](std::size_t i) {
+      const auto c = static_cast<std::uint32_t>(i);
+      result.value[c] = at(value_, c);
+      result.source[c] = std::min(at(source_, c), result.value[c]);
+    });
+    return result;
+  }
+
+ private:
+  /// `of_free(corner)`: what free corners have.
+  template <class OfFree>
+  double at_corner(std::uint32_t corner, const OfFree& of_free) const {
+    if (!corners_.hangs(corner)) return of_free(corner);
+    double sum = 0;
+    for (const OctreeCorners::Share& s : corners_.shares_of(corner)) sum += s.weight * of_free(s.corner);
+    return sum;
+  }
+  double at(const std::vector<double>& of_free, std::uint32_t corner) const {
+    return at_corner(corner, [&](std::uint32_t c) { return of_free[c]; });
+  }
 
   /// Leaves in the order of their smallest corner.
   void order_leaves() {
@@ -418,7 +430,7 @@ class Grader {
   std::vector<std::uint8_t> plain_, dirty_;  ///< per leaf
   std::vector<std::uint32_t> order_;
   std::vector<std::size_t> groups_;  ///< of the order: where each ends
-  Groups<> leaves_;                  ///< per corner, as 8 * leaf + which of its corners
+  Groups<> leaves_;                  ///< per corner
   Groups<> dependents_;              ///< per free corner: the hanging corners that it is part of
 };
 

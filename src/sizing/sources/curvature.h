@@ -6,7 +6,7 @@
 #include <octafront/size_field.h>
 
 #include "base/mesh/known_surface.h"
-#include "sizing/prediction/affordable.h"
+#include "sizing/field/affordable.h"
 
 #include <array>
 #include <cstddef>

@@ -5,7 +5,7 @@
 #include "base/core/elementary.h"
 #include "base/core/parallel.h"
 #include "base/geometry/measures.h"
-#include "sizing/prediction/thin_walls.h"
+#include "sizing/field/thin_walls.h"
 
 #include <algorithm>
 #include <cmath>

@@ -8,7 +8,7 @@
 #include "base/geometry/triangle_tree.h"
 #include "base/mesh/complex.h"
 #include "base/places/places.h"
-#include "sizing/prediction/affordable.h"
+#include "sizing/field/affordable.h"
 
 #include <algorithm>
 #include <cmath>

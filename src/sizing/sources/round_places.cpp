@@ -4,7 +4,7 @@
 
 #include "base/core/parallel.h"
 #include "base/geometry/measures.h"
-#include "sizing/prediction/thin_walls.h"
+#include "sizing/field/thin_walls.h"
 
 #include <algorithm>
 #include <cstdint>

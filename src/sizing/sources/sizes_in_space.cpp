@@ -8,8 +8,8 @@
 #include "base/geometry/triangle_tree.h"
 #include "base/mesh/complex.h"
 #include "base/places/places.h"
+#include "sizing/field/affordable.h"
 #include "sizing/field/octree.h"
-#include "sizing/prediction/affordable.h"
 #include "sizing/sources/mesh_sizes.h"
 
 #include <algorithm>

@@ -1,7 +1,7 @@
 #include "sizing/sources/source_grid.h"
 
+#include "sizing/field/affordable.h"
 #include "sizing/field/grid_caps.h"
-#include "sizing/prediction/affordable.h"
 
 #include <algorithm>
 #include <utility>

@@ -1,7 +1,7 @@
 #include "sizing/sources/wanted_sizes.h"
 
 #include "base/geometry/measures.h"
-#include "sizing/prediction/affordable.h"
+#include "sizing/field/affordable.h"
 #include "sizing/sources/curvature.h"
 #include "sizing/sources/feature_sizes.h"
 #include "sizing/sources/gaps.h"
@@ -255,14 +255,14 @@ std::vector<SizeSample> samples_of_features(const SurfaceMesh& surface, const Ch
 
 /// Where the body is thin and round: sizes that keep a needle's volume, and both sides of a tube apart. Coarser
 /// automatic sizes do not follow automatic_factor beyond kCoarsestThin there.
-SizeAtPlace sizes_of_thin(const KnownSurface& known, const SizeOptions& options, Bends& bends, WantedSizes& wanted,
-                          const Stage& stage) {
+SizeAtPlace sizes_of_thin(const KnownSurface& known, const SizeOptions& options, double least, Bends& bends,
+                          WantedSizes& wanted, const Stage& stage) {
   if (!options.size && !wanted.automatic) return {};
   const double beyond = wanted.automatic ? std::max(1.0, options.automatic_factor / kCoarsestThin) : 1;
   std::vector<double> face = wanted.face;
   for (double& h : face) h *= beyond;
   const double largest = *std::ranges::max_element(wanted.face);
-  const double floor = std::max(options.min_size.value_or(0), kRoundFloor * largest);
+  const double floor = std::max({options.min_size.value_or(0), least, kRoundFloor * largest});
   const auto enter = [&](const char* name, SizeAtPlace sizes, const char* what, const char* why) {
     if (sizes && beyond > 1) sizes.at = [at = sizes.at, beyond](const PlaceOnSurface& p) { return at(p) / beyond; };
     wanted.sources.add(name, sizes);
@@ -331,7 +331,7 @@ WantedSizes wanted_sizes(const KnownSurface& known, const SizeOptions& options, 
   wanted.ceiling = std::max(is_graded ? options.max_size.value_or(HUGE_VAL) : choice.base * scale, least_size);
   const auto [least, most] = std::minmax_element(wanted.face.begin(), wanted.face.end());
   wanted.automatic = choice.automatic && !options.min_size;
-  wanted.at_place = least_of(wanted.at_place, sizes_of_thin(known, options, bends, wanted, stage));
+  wanted.at_place = least_of(wanted.at_place, sizes_of_thin(known, options, rules.least, bends, wanted, stage));
   wanted.even = !wanted.at_place && wanted.points.empty() && *least == *most;
   stage.count("base size", choice.base * scale);
   stage.count("extent", model_extent(surface));

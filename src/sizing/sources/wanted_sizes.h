@@ -9,7 +9,7 @@
 #include "base/core/stage.h"
 #include "base/mesh/known_surface.h"
 #include "sizing/field/background_grid.h"
-#include "sizing/sources/shares.h"
+#include "sizing/sources/source_shares.h"
 #include "sizing/sources/surface_samples.h"
 
 #include <cstdint>
@@ -34,6 +34,8 @@ struct FaceRules {
   double turns = 0;
   /// Elements are to be curved: automatic ones are kSecondOrderEdge times as large, and details as fine.
   bool curved = false;
+  /// Where the body is thin it asks for no size below this; 0: there is no such limit.
+  double least = 0;
 };
 
 /// An edge of second order has a node in its middle, and says as much as two.

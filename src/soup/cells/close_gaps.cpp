@@ -74,6 +74,13 @@ class Lengths {
   std::vector<double> shortest_;
 };
 
+TriangleCorners wall_corners(const std::vector<Vec3>& points, const Triangle& t) {
+  return {points[t[0]], points[t[1]], points[t[2]]};
+}
+bool has_no_area(const std::vector<Vec3>& points, const Triangle& t) {
+  return t[0] == t[1] || t[1] == t[2] || t[2] == t[0] || collinear(points[t[0]], points[t[1]], points[t[2]]);
+}
+
 /// One side of a meeting: faces, with what it takes to find them.
 struct Party {
   std::vector<BodyFace> faces;
@@ -129,6 +136,177 @@ struct Party {
   }
 };
 
+/// What lies on edges of walls.
+class EdgeVertices {
+ public:
+  explicit EdgeVertices(const std::vector<Vec3>& points) : points_(points) {}
+
+  std::set<VertexIndex>& operator[](const Edge& e) { return vertices_[e]; }
+
+  /// The vertices along an edge, its ends too, from the smaller one on.
+  std::vector<VertexIndex> along(const Edge& e) const {
+    std::vector<VertexIndex> line{e[0]};
+    if (const auto found = vertices_.find(e); found != vertices_.end())
+      for (const VertexIndex v : found->second)
+        if (v != e[0] && v != e[1]) line.push_back(v);
+    const Vec3 from = points_[e[0]], to = points_[e[1]];
+    std::sort(line.begin() + 1, line.end(), [&](VertexIndex a, VertexIndex b) {
+      return std::pair(dot(points_[a] - from, to - from), a) < std::pair(dot(points_[b] - from, to - from), b);
+    });
+    line.push_back(e[1]);
+    return line;
+  }
+
+  /// The edges that each vertex lies on.
+  using Lines = std::unordered_map<VertexIndex, std::vector<Edge>>;
+  Lines lines_of(const std::vector<Edge>& edges) const {
+    Lines lines;
+    for (const Edge& e : edges)
+      for (const VertexIndex v : along(e)) lines[v].push_back(e);
+    return lines;
+  }
+  static std::vector<Edge> common_edges(const Lines& lines, VertexIndex a, VertexIndex b) {
+    std::vector<Edge> common;
+    const auto of_a = lines.find(a), of_b = lines.find(b);
+    if (of_a == lines.end() || of_b == lines.end()) return common;
+    std::set_intersection(of_a->second.begin(), of_a->second.end(), of_b->second.begin(), of_b->second.end(),
+                          std::back_inserter(common));
+    return common;
+  }
+
+ private:
+  const std::vector<Vec3>& points_;
+  std::map<Edge, std::set<VertexIndex>> vertices_;
+};
+
+/// Walls divided at what lies on them, and along the edges between.
+class WallDivider {
+ public:
+  WallDivider(std::vector<Vec3>& points, const EdgeVertices& on_edge, const RunContext& context)
+      : points_(points), on_edge_(on_edge), context_(context) {}
+
+  void add_edge(VertexIndex a, VertexIndex b) {
+    neighbours_[a].push_back(b);
+    neighbours_[b].push_back(a);
+  }
+
+  /// `inside`: what lies inside of triangles.
+  void divide(const Party& party, std::map<std::uint32_t, std::vector<VertexIndex>>& inside,
+              std::vector<BodyFace>& divided) {
+    std::vector<Border> borders;
+    for (const Triangle& t : party.triangles) {
+      borders.push_back(has_no_area(points_, t) ? Border{} : border_of(t));
+      for (const auto& [a, b] : borders.back()) add_edge(a, b);
+    }
+    for (std::uint32_t t = 0; t < party.triangles.size(); ++t) {
+      if (t % 1024 == 0) context_.check();
+      if (borders[t].empty()) continue;
+      const auto within = inside.find(t);
+      BodyFace face = party.faces[t];
+      face.corners = party.triangles[t];
+      if (borders[t].size() == 3 && within == inside.end())
+        divided.push_back(face);
+      else
+        divide(face, borders[t], within == inside.end() ? std::vector<VertexIndex>{} : within->second, divided);
+    }
+  }
+
+ private:
+  using Border = std::vector<std::array<VertexIndex, 2>>;
+
+  Border border_of(const Triangle& t) const {
+    Border border;
+    for (int i = 0; i < 3; ++i) {
+      std::vector<VertexIndex> line = on_edge_.along(sorted_edge(t[i], t[(i + 1) % 3]));
+      if (t[i] > t[(i + 1) % 3]) std::reverse(line.begin(), line.end());
+      for (std::size_t k = 0; k + 1 < line.size(); ++k) border.push_back({line[k], line[k + 1]});
+    }
+    return border;
+  }
+
+  /// The triangle divided at what lies on it, along the edges of other bodies between.
+  void divide(const BodyFace& face, const Border& border, std::vector<VertexIndex> local,
+              std::vector<BodyFace>& divided) {
+    const TriangleCorners c = wall_corners(points_, face.corners);
+    const Vec3 n = double_area_normal(c[0], c[1], c[2]);
+    const double x = std::abs(n.x), y = std::abs(n.y), z = std::abs(n.z);
+    const int axis = x >= y && x >= z ? 0 : y >= z ? 1 : 2;
+    for (const auto& [a, b] : border) local.push_back(a);
+    std::sort(local.begin(), local.end());
+    local.erase(std::unique(local.begin(), local.end()), local.end());
+    Box3 box;
+    for (const VertexIndex v : local) box.add(points_[v]);
+
+    PlaneMesh mesh(arrangement::plane_through(c[0], c[1], c[2]), axis, box);
+    std::map<VertexIndex, PlaneMesh::Node> node;
+    std::map<PlaneMesh::Node, VertexIndex> vertex;
+    for (const VertexIndex v : local) {
+      node[v] = mesh.add_point({points_[v]});
+      vertex.try_emplace(node[v], v);
+    }
+    const auto add_segment = [&](VertexIndex a, VertexIndex b, std::uint32_t of) {
+      if (node[a] == node[b]) return;
+      mesh.add_segment(node[a], node[b], arrangement::plane_along_axis(points_[a], points_[b], axis), of);
+    };
+    const auto turn = [&](VertexIndex a, VertexIndex b, VertexIndex v) {
+      return arrangement::orient_along(axis, {points_[a]}, {points_[b]}, {points_[v]});
+    };
+    const auto leaves = [&](VertexIndex a, VertexIndex b) {
+      return std::any_of(border.begin(), border.end(), [&](const auto& e) {
+        return turn(a, b, e[0]) * turn(a, b, e[1]) < 0 && turn(e[0], e[1], a) * turn(e[0], e[1], b) < 0;
+      });
+    };
+    for (const auto& [a, b] : border) add_segment(std::min(a, b), std::max(a, b), 0);
+    for (const VertexIndex a : local) {
+      std::vector<VertexIndex>& others = neighbours_[a];
+      std::sort(others.begin(), others.end());
+      others.erase(std::unique(others.begin(), others.end()), others.end());
+      for (const VertexIndex b : others)
+        if (a < b && std::binary_search(local.begin(), local.end(), b) && !leaves(a, b)) add_segment(a, b, kNone);
+    }
+    mesh.improve();
+    const auto first_new = static_cast<VertexIndex>(points_.size());
+    for (std::size_t i = 0; i < mesh.crossings().size(); ++i) {
+      vertex[mesh.first_crossing_node(i)] = static_cast<VertexIndex>(points_.size());
+      points_.push_back(mesh.crossings()[i].at);
+    }
+    const bool turned = turn(face.corners[0], face.corners[1], face.corners[2]) < 0;
+    std::vector<Triangle> made;
+    for (const PlaneMesh::Piece& piece : mesh.pieces()) {
+      made.push_back({vertex[piece.corners[0]], vertex[piece.corners[1]], vertex[piece.corners[2]]});
+      if (turned) std::swap(made.back()[1], made.back()[2]);
+    }
+    if (!fills(made, border)) {
+      points_.resize(first_new);
+      made.clear();
+      for (const auto& [a, b] : border)
+        if (a != border.front()[0] && b != border.front()[0]) made.push_back({border.front()[0], a, b});
+    }
+    for (const Triangle& t : made) {
+      // Later triangles at the same place are divided in the same way.
+      for (int i = 0; i < 3; ++i) add_edge(t[i], t[(i + 1) % 3]);
+      divided.push_back({t, face.body, face.source});
+    }
+  }
+
+  /// Whether the pieces have that border: where it was bent so far that it crosses itself they have not.
+  static bool fills(const std::vector<Triangle>& pieces, const Border& border) {
+    std::map<Edge, int> ways;
+    const auto add = [&](VertexIndex a, VertexIndex b, int times) {
+      ways[sorted_edge(a, b)] += a < b ? times : -times;
+    };
+    for (const Triangle& t : pieces)
+      for (int i = 0; i < 3; ++i) add(t[i], t[(i + 1) % 3], 1);
+    for (const auto& [a, b] : border) add(a, b, -1);
+    return std::all_of(ways.begin(), ways.end(), [](const auto& way) { return way.second == 0; });
+  }
+
+  std::vector<Vec3>& points_;
+  const EdgeVertices& on_edge_;
+  const RunContext& context_;
+  std::unordered_map<VertexIndex, std::vector<VertexIndex>> neighbours_;  ///< by divided edges
+};
+
 /// A body that comes to those before it.
 class BodyMeeting {
  public:
@@ -141,7 +319,8 @@ class BodyMeeting {
         misfits_(misfits),
         rims_(rims),
         lengths_(lengths),
-        context_(context) {
+        context_(context),
+        on_edge_(points) {
     for (const BodyFace& f : earlier_.faces) most_ = std::max(most_, reach(f));
   }
 
@@ -156,13 +335,14 @@ class BodyMeeting {
     find_settled();
     cross_edges(earlier, later);
     follow_edges();
+    WallDivider divider(points_, on_edge_, context_);
     // Where the later body's walls turn, they may leave the earlier ones.
     for (const auto& [f, of] : later_.sharp) {
-      const std::vector<VertexIndex> line = along(f);
-      for (std::size_t k = 0; k + 1 < line.size(); ++k) add_edge(line[k], line[k + 1]);
+      const std::vector<VertexIndex> line = on_edge_.along(f);
+      for (std::size_t k = 0; k + 1 < line.size(); ++k) divider.add_edge(line[k], line[k + 1]);
     }
-    divide(earlier_, inside_earlier_, divided_earlier);
-    divide(later_, inside_later_, divided_later);
+    divider.divide(earlier_, inside_earlier_, divided_earlier);
+    divider.divide(later_, inside_later_, divided_later);
     const bool was_apart = misfits_.largest() > misfits_.floor();
     if (was_apart && later_.ends.empty()) share_walls(points_, divided_earlier, divided_later, misfits_, context_);
   }
@@ -173,10 +353,6 @@ class BodyMeeting {
 
  private:
   double reach(const BodyFace& f) const { return misfits_.reach(f.body, body_); }
-  TriangleCorners corners(const Triangle& t) const { return {points_[t[0]], points_[t[1]], points_[t[2]]}; }
-  bool is_degenerate(const Triangle& t) const {
-    return t[0] == t[1] || t[1] == t[2] || t[2] == t[0] || collinear(points_[t[0]], points_[t[1]], points_[t[2]]);
-  }
 
   bool faces_wall(const Party& of, VertexIndex v, Vec3 normal, Vec3 way) const {
     if (&of == &later_ && of.end_vertices.contains(v)) return true;
@@ -323,7 +499,7 @@ class BodyMeeting {
     std::uint32_t face = kNone;
     const auto each_near = [&](double within, auto&& visit) {
       tree.for_each_box_near(grown({p, p}, within), [&](std::uint32_t t, const TriangleCorners& c) {
-        if (is_degenerate(on.triangles[t])) return true;
+        if (has_no_area(points_, on.triangles[t])) return true;
         visit(t, c);
         return true;
       });
@@ -370,8 +546,8 @@ class BodyMeeting {
     std::set<std::array<Edge, 2>> crossed;
     for (std::uint32_t s = 0; s < later_.triangles.size(); ++s) {
       if (s % 1024 == 0) context_.check();
-      if (is_degenerate(later_.triangles[s])) continue;
-      tree.for_each_box_near(grown(box_of(corners(later_.triangles[s])), kBend * most_),
+      if (has_no_area(points_, later_.triangles[s])) continue;
+      tree.for_each_box_near(grown(box_of(wall_corners(points_, later_.triangles[s])), kBend * most_),
                              [&](std::uint32_t t, const TriangleCorners&) {
                                cross_edges_of(t, s, own, crossed);
                                return true;
@@ -429,61 +605,31 @@ class BodyMeeting {
     on_f.insert(v);
   }
 
-  /// The vertices along an edge, its ends too, from the smaller one on.
-  std::vector<VertexIndex> along(const Edge& e) const {
-    std::vector<VertexIndex> line{e[0]};
-    if (const auto found = on_edge_.find(e); found != on_edge_.end())
-      for (const VertexIndex v : found->second)
-        if (v != e[0] && v != e[1]) line.push_back(v);
-    const Vec3 from = points_[e[0]], to = points_[e[1]];
-    std::sort(line.begin() + 1, line.end(), [&](VertexIndex a, VertexIndex b) {
-      return std::pair(dot(points_[a] - from, to - from), a) < std::pair(dot(points_[b] - from, to - from), b);
-    });
-    line.push_back(e[1]);
-    return line;
-  }
-
-  /// The edges that each vertex lies on.
-  using Lines = std::unordered_map<VertexIndex, std::vector<Edge>>;
-  Lines lines_of(const std::vector<Edge>& edges) const {
-    Lines lines;
-    for (const Edge& e : edges)
-      for (const VertexIndex v : along(e)) lines[v].push_back(e);
-    return lines;
-  }
-  static std::vector<Edge> common_edges(const Lines& lines, VertexIndex a, VertexIndex b) {
-    std::vector<Edge> common;
-    const auto of_a = lines.find(a), of_b = lines.find(b);
-    if (of_a == lines.end() || of_b == lines.end()) return common;
-    std::set_intersection(of_a->second.begin(), of_a->second.end(), of_b->second.begin(), of_b->second.end(),
-                          std::back_inserter(common));
-    return common;
-  }
-
   /// Edges that go along edges of the other party from end to end cross none.
   void find_settled() {
     const std::vector<Edge> of_later = later_.edges();
-    const auto settle = [&](const std::vector<Edge>& edges, const Lines& others) {
+    const auto settle = [&](const std::vector<Edge>& edges, const EdgeVertices::Lines& others) {
       for (const Edge& e : edges) {
-        const std::vector<VertexIndex> line = along(e);
+        const std::vector<VertexIndex> line = on_edge_.along(e);
         bool is_settled = true;
         for (std::size_t k = 0; k + 1 < line.size() && is_settled; ++k)
-          is_settled = !common_edges(others, line[k], line[k + 1]).empty();
+          is_settled = !EdgeVertices::common_edges(others, line[k], line[k + 1]).empty();
         if (is_settled) settled_.insert(e);
       }
     };
-    settle(of_later, lines_of(kept_edges_));
-    settle(kept_edges_, lines_of(of_later));
+    settle(of_later, on_edge_.lines_of(kept_edges_));
+    settle(kept_edges_, on_edge_.lines_of(of_later));
   }
 
   /// Between two vertices of one edge of earlier walls an edge goes along it, through all that lie on it.
   void follow_edges() {
-    const Lines lines = lines_of(kept_edges_);
+    const EdgeVertices::Lines lines = on_edge_.lines_of(kept_edges_);
     for (const Edge& f : later_.edges()) {
       if (is_kept(f)) continue;
-      const std::vector<VertexIndex> line = along(f);
+      const std::vector<VertexIndex> line = on_edge_.along(f);
       for (std::size_t k = 0; k + 1 < line.size(); ++k)
-        for (const Edge& e : common_edges(lines, line[k], line[k + 1])) follow(f, line[k], line[k + 1], along(e));
+        for (const Edge& e : EdgeVertices::common_edges(lines, line[k], line[k + 1]))
+          follow(f, line[k], line[k + 1], on_edge_.along(e));
     }
   }
   void follow(const Edge& f, VertexIndex from, VertexIndex to, const std::vector<VertexIndex>& along_e) {
@@ -491,120 +637,6 @@ class BodyMeeting {
     if (a > b) std::swap(a, b);
     for (const VertexIndex v : std::vector<VertexIndex>(a + 1, b))
       if (v != f[0] && v != f[1]) on_edge_[f].insert(v);
-  }
-
-  using Border = std::vector<std::array<VertexIndex, 2>>;
-
-  Border border_of(const Triangle& t) const {
-    Border border;
-    for (int i = 0; i < 3; ++i) {
-      std::vector<VertexIndex> line = along(sorted_edge(t[i], t[(i + 1) % 3]));
-      if (t[i] > t[(i + 1) % 3]) std::reverse(line.begin(), line.end());
-      for (std::size_t k = 0; k + 1 < line.size(); ++k) border.push_back({line[k], line[k + 1]});
-    }
-    return border;
-  }
-
-  void divide(const Party& party, std::map<std::uint32_t, std::vector<VertexIndex>>& inside,
-              std::vector<BodyFace>& divided) {
-    std::vector<Border> borders;
-    for (const Triangle& t : party.triangles) {
-      borders.push_back(is_degenerate(t) ? Border{} : border_of(t));
-      for (const auto& [a, b] : borders.back()) add_edge(a, b);
-    }
-    for (std::uint32_t t = 0; t < party.triangles.size(); ++t) {
-      if (t % 1024 == 0) context_.check();
-      if (borders[t].empty()) continue;
-      const auto within = inside.find(t);
-      BodyFace face = party.faces[t];
-      face.corners = party.triangles[t];
-      if (borders[t].size() == 3 && within == inside.end())
-        divided.push_back(face);
-      else
-        divide(face, borders[t], within == inside.end() ? std::vector<VertexIndex>{} : within->second, divided);
-    }
-  }
-
-  void add_edge(VertexIndex a, VertexIndex b) {
-    neighbours_[a].push_back(b);
-    neighbours_[b].push_back(a);
-  }
-
-  /// The triangle divided at what lies on it, along the edges of other bodies between.
-  void divide(const BodyFace& face, const Border& border, std::vector<VertexIndex> local,
-              std::vector<BodyFace>& divided) {
-    const TriangleCorners c = corners(face.corners);
-    const Vec3 n = double_area_normal(c[0], c[1], c[2]);
-    const double x = std::abs(n.x), y = std::abs(n.y), z = std::abs(n.z);
-    const int axis = x >= y && x >= z ? 0 : y >= z ? 1 : 2;
-    for (const auto& [a, b] : border) local.push_back(a);
-    std::sort(local.begin(), local.end());
-    local.erase(std::unique(local.begin(), local.end()), local.end());
-    Box3 box;
-    for (const VertexIndex v : local) box.add(points_[v]);
-
-    PlaneMesh mesh(arrangement::plane_through(c[0], c[1], c[2]), axis, box);
-    std::map<VertexIndex, PlaneMesh::Node> node;
-    std::map<PlaneMesh::Node, VertexIndex> vertex;
-    for (const VertexIndex v : local) {
-      node[v] = mesh.add_point({points_[v]});
-      vertex.try_emplace(node[v], v);
-    }
-    const auto add_segment = [&](VertexIndex a, VertexIndex b, std::uint32_t of) {
-      if (node[a] == node[b]) return;
-      mesh.add_segment(node[a], node[b], arrangement::plane_along_axis(points_[a], points_[b], axis), of);
-    };
-    const auto turn = [&](VertexIndex a, VertexIndex b, VertexIndex v) {
-      return arrangement::orient_along(axis, {points_[a]}, {points_[b]}, {points_[v]});
-    };
-    const auto leaves = [&](VertexIndex a, VertexIndex b) {
-      return std::any_of(border.begin(), border.end(), [&](const auto& e) {
-        return turn(a, b, e[0]) * turn(a, b, e[1]) < 0 && turn(e[0], e[1], a) * turn(e[0], e[1], b) < 0;
-      });
-    };
-    for (const auto& [a, b] : border) add_segment(std::min(a, b), std::max(a, b), 0);
-    for (const VertexIndex a : local) {
-      std::vector<VertexIndex>& others = neighbours_[a];
-      std::sort(others.begin(), others.end());
-      others.erase(std::unique(others.begin(), others.end()), others.end());
-      for (const VertexIndex b : others)
-        if (a < b && std::binary_search(local.begin(), local.end(), b) && !leaves(a, b)) add_segment(a, b, kNone);
-    }
-    mesh.improve();
-    const auto first_new = static_cast<VertexIndex>(points_.size());
-    for (std::size_t i = 0; i < mesh.crossings().size(); ++i) {
-      vertex[mesh.first_crossing_node(i)] = static_cast<VertexIndex>(points_.size());
-      points_.push_back(mesh.crossings()[i].at);
-    }
-    const bool turned = turn(face.corners[0], face.corners[1], face.corners[2]) < 0;
-    std::vector<Triangle> made;
-    for (const PlaneMesh::Piece& piece : mesh.pieces()) {
-      made.push_back({vertex[piece.corners[0]], vertex[piece.corners[1]], vertex[piece.corners[2]]});
-      if (turned) std::swap(made.back()[1], made.back()[2]);
-    }
-    if (!fills(made, border)) {
-      points_.resize(first_new);
-      made.clear();
-      for (const auto& [a, b] : border)
-        if (a != border.front()[0] && b != border.front()[0]) made.push_back({border.front()[0], a, b});
-    }
-    for (const Triangle& t : made) {
-      // Later triangles at the same place are divided in the same way.
-      for (int i = 0; i < 3; ++i) add_edge(t[i], t[(i + 1) % 3]);
-      divided.push_back({t, face.body, face.source});
-    }
-  }
-
-  /// Whether the pieces have that border: where it was bent so far that it crosses itself they have not.
-  static bool fills(const std::vector<Triangle>& pieces, const Border& border) {
-    std::map<Edge, int> ways;
-    const auto add = [&](VertexIndex a, VertexIndex b, int times) {
-      ways[sorted_edge(a, b)] += a < b ? times : -times;
-    };
-    for (const Triangle& t : pieces)
-      for (int i = 0; i < 3; ++i) add(t[i], t[(i + 1) % 3], 1);
-    for (const auto& [a, b] : border) add(a, b, -1);
-    return std::all_of(ways.begin(), ways.end(), [](const auto& way) { return way.second == 0; });
   }
 
   std::vector<Vec3>& points_;
@@ -617,9 +649,8 @@ class BodyMeeting {
   double most_ = 0;
   std::vector<Edge> kept_edges_;  ///< of earlier bodies, sorted
   std::set<Edge> settled_;
-  std::map<Edge, std::set<VertexIndex>> on_edge_;
+  EdgeVertices on_edge_;
   std::map<std::uint32_t, std::vector<VertexIndex>> inside_earlier_, inside_later_;  ///< per triangle
-  std::unordered_map<VertexIndex, std::vector<VertexIndex>> neighbours_;             ///< by divided edges
 };
 
 /// One body after the other comes to those that are together already.

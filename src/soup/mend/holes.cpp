@@ -6,7 +6,7 @@
 #include "soup/mend/based_cap.h"
 #include "soup/mend/cap.h"
 #include "soup/mend/fair.h"
-#include "soup/mend/fins.h"
+#include "soup/mend/fin_strips.h"
 #include "soup/mend/loops.h"
 #include "soup/mend/shared_lids.h"
 

@@ -5,10 +5,10 @@
 #include "base/geometry/measures.h"
 #include "base/geometry/triangle_tree.h"
 #include "base/mesh/features.h"
+#include "fill/lattice/cut_lattice.h"
 #include "fill/lattice/lattice_octree.h"
-#include "fill/stuffing/cut_lattice.h"
-#include "fill/stuffing/manifold.h"
-#include "fill/stuffing/stuff.h"
+#include "fill/lattice/manifold.h"
+#include "fill/lattice/stuff.h"
 
 #include <algorithm>
 #include <cmath>

@@ -1,13 +1,13 @@
 #include "surface/edits/coarsen.h"
 
-#include "surface/edits/blocks.h"
 #include "surface/edits/star_collapse.h"
+#include "surface/edits/surface_blocks.h"
 
 #include <algorithm>
 #include <span>
 #include <utility>
 
-namespace octafront::remeshing {
+namespace octafront::surface {
 
 namespace {
 
@@ -141,4 +141,4 @@ void remove_input_vertices(WorkingMesh& mesh, const SizeField& sizes, const RunC
   Coarsener(mesh, sizes, context, counts).run();
 }
 
-}  // namespace octafront::remeshing
+}  // namespace octafront::surface

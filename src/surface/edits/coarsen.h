@@ -5,7 +5,7 @@
 
 #include "surface/edits/working_mesh.h"
 
-namespace octafront::remeshing {
+namespace octafront::surface {
 
 struct CoarsenCounts {
   std::uint64_t collapses = 0, flips = 0;
@@ -17,4 +17,4 @@ struct CoarsenCounts {
 /// curve).
 void remove_input_vertices(WorkingMesh& mesh, const SizeField& sizes, const RunContext& context, CoarsenCounts& counts);
 
-}  // namespace octafront::remeshing
+}  // namespace octafront::surface

@@ -2,7 +2,7 @@
 
 #include <algorithm>
 
-namespace octafront::remeshing {
+namespace octafront::surface {
 
 LineEdits::LineEdits(WorkingMesh& mesh, const std::vector<std::uint8_t>& is_fixed) : mesh_(mesh), is_fixed_(is_fixed) {
   for (std::uint32_t t = 0; t < mesh.triangle_count(); ++t) {
@@ -70,4 +70,4 @@ void LineEdits::settle(VertexIndex v) {
   }
 }
 
-}  // namespace octafront::remeshing
+}  // namespace octafront::surface

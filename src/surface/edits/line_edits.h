@@ -5,7 +5,7 @@
 #include <cstdint>
 #include <vector>
 
-namespace octafront::remeshing {
+namespace octafront::surface {
 
 /// Changes of the working mesh in which feature lines may merge and corners vanish, which WorkingMesh alone forbids:
 /// for places that are too narrow for an element. Patches never vanish, and vertices marked as fixed stay.
@@ -33,4 +33,4 @@ class LineEdits {
   std::vector<std::uint32_t> patch_size_;  ///< triangles in each patch
 };
 
-}  // namespace octafront::remeshing
+}  // namespace octafront::surface

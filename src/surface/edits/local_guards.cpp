@@ -3,7 +3,7 @@
 #include <atomic>
 #include <utility>
 
-namespace octafront::remeshing {
+namespace octafront::surface {
 
 namespace {
 
@@ -104,4 +104,4 @@ std::uint64_t make_delaunay(WorkingMesh& mesh, const SurfaceBlocks& blocks, std:
   return flips;
 }
 
-}  // namespace octafront::remeshing
+}  // namespace octafront::surface

@@ -1,9 +1,9 @@
 #pragma once
 
-#include "surface/edits/blocks.h"
+#include "surface/edits/surface_blocks.h"
 #include "surface/edits/working_mesh.h"
 
-namespace octafront::remeshing {
+namespace octafront::surface {
 
 /// How far triangles may turn when the mesh changes around them; cosines.
 struct TurnLimits {
@@ -40,4 +40,4 @@ std::uint64_t make_delaunay(WorkingMesh& mesh, std::vector<HalfEdge>& edges, con
 std::uint64_t make_delaunay(WorkingMesh& mesh, const SurfaceBlocks& blocks, std::vector<HalfEdge> edges,
                             const TurnLimits& limits);
 
-}  // namespace octafront::remeshing
+}  // namespace octafront::surface

@@ -2,7 +2,7 @@
 
 #include <algorithm>
 
-namespace octafront::remeshing {
+namespace octafront::surface {
 
 void StarCollapse::gather(VertexIndex v) {
   ring_.clear();
@@ -61,4 +61,4 @@ double StarCollapse::longest_after(std::size_t towards) const {
   return longest;
 }
 
-}  // namespace octafront::remeshing
+}  // namespace octafront::surface

@@ -2,7 +2,7 @@
 
 #include "surface/edits/local_guards.h"
 
-namespace octafront::remeshing {
+namespace octafront::surface {
 
 /// Judges what becomes of the triangles around a vertex if it moves along one of its edges and vanishes.
 class StarCollapse {
@@ -27,4 +27,4 @@ class StarCollapse {
   std::vector<Vec3> stars_;
 };
 
-}  // namespace octafront::remeshing
+}  // namespace octafront::surface

@@ -7,7 +7,7 @@
 #include <array>
 #include <numeric>
 
-namespace octafront::remeshing {
+namespace octafront::surface {
 
 WorkingMesh::WorkingMesh(const InputSurface& input)
     : HalfEdgeMesh(input.mesh),
@@ -295,4 +295,4 @@ std::optional<std::string> WorkingMesh::first_inconsistency(std::span<const Vert
   return std::nullopt;
 }
 
-}  // namespace octafront::remeshing
+}  // namespace octafront::surface

@@ -5,9 +5,9 @@
 // closed manifold exists at every moment.
 
 #include "base/core/shared_value.h"
-#include "surface/ground/walk.h"
+#include "surface/edits/walk.h"
 
-namespace octafront::remeshing {
+namespace octafront::surface {
 
 /// What a vertex of the working mesh is, and so what may happen to it.
 enum class VertexKind : std::uint8_t {
@@ -114,4 +114,4 @@ struct WorkingMesh : HalfEdgeMesh {
   std::optional<std::string> first_inconsistency(std::span<const VertexIndex> touched) const;
 };
 
-}  // namespace octafront::remeshing
+}  // namespace octafront::surface

@@ -5,7 +5,7 @@
 
 #include <algorithm>
 
-namespace octafront::remeshing {
+namespace octafront::surface {
 
 namespace {
 
@@ -226,4 +226,4 @@ WorkingMesh insert_points(const InputSurface& input, const std::vector<Curve>& c
   return Inserter(input, front, counts).run(curves, context);
 }
 
-}  // namespace octafront::remeshing
+}  // namespace octafront::surface

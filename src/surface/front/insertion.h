@@ -3,9 +3,9 @@
 #include <octafront/run_context.h>
 
 #include "surface/edits/working_mesh.h"
-#include "surface/front/front.h"
+#include "surface/front/surface_front.h"
 
-namespace octafront::remeshing {
+namespace octafront::surface {
 
 struct InsertionCounts {
   std::uint64_t inserted = 0;  ///< as new vertices
@@ -17,4 +17,4 @@ struct InsertionCounts {
 WorkingMesh insert_points(const InputSurface& input, const std::vector<Curve>& curves, const FrontPoints& front,
                           const RunContext& context, InsertionCounts& counts);
 
-}  // namespace octafront::remeshing
+}  // namespace octafront::surface

@@ -7,7 +7,7 @@
 #include <map>
 #include <utility>
 
-namespace octafront::remeshing {
+namespace octafront::surface {
 
 namespace {
 
@@ -203,4 +203,4 @@ std::vector<Edge> features_at_scale(const InputSurface& input, const Features& f
   return NoiseFilter(input, sizes).run(std::move(edges));
 }
 
-}  // namespace octafront::remeshing
+}  // namespace octafront::surface

@@ -5,7 +5,7 @@
 
 #include <algorithm>
 
-namespace octafront::remeshing {
+namespace octafront::surface {
 
 namespace {
 
@@ -305,4 +305,4 @@ bool CurvePoints::halve(HalfEdge h) {
   return true;
 }
 
-}  // namespace octafront::remeshing
+}  // namespace octafront::surface

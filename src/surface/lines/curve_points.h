@@ -6,7 +6,7 @@
 #include <map>
 #include <optional>
 
-namespace octafront::remeshing {
+namespace octafront::surface {
 
 /// Moves division points along their curves, and adds some, where that makes the triangles on both sides better: lines
 /// that run side by side or meet at a small angle are divided each by itself, and their points face each other badly. A
@@ -68,4 +68,4 @@ class CurvePoints {
   std::map<Edge, std::uint32_t> undivided_;  ///< curves of one segment, by their ends
 };
 
-}  // namespace octafront::remeshing
+}  // namespace octafront::surface

@@ -4,7 +4,7 @@
 #include <map>
 #include <utility>
 
-namespace octafront::remeshing {
+namespace octafront::surface {
 
 namespace {
 
@@ -332,4 +332,4 @@ void divide_curves(const InputSurface& input, const SizeField& sizes, std::vecto
   }
 }
 
-}  // namespace octafront::remeshing
+}  // namespace octafront::surface

@@ -7,11 +7,11 @@
 #include <octafront/size_field.h>
 
 #include "base/mesh/periodic_cell.h"
-#include "surface/ground/walk.h"
+#include "surface/edits/walk.h"
 
 #include <vector>
 
-namespace octafront::remeshing {
+namespace octafront::surface {
 
 /// A point of a feature curve: on an input half-edge at a + t (b - a), or exactly at an input vertex.
 struct CurvePoint {
@@ -63,4 +63,4 @@ void divide_curves(const InputSurface& input, const SizeField& sizes, std::vecto
 /// The point that lies at this length along the curve.
 CurvePoint point_along(const InputSurface& input, const Curve& curve, double along);
 
-}  // namespace octafront::remeshing
+}  // namespace octafront::surface

@@ -8,7 +8,7 @@
 #include <numeric>
 #include <vector>
 
-namespace octafront::remeshing {
+namespace octafront::surface {
 
 namespace {
 
@@ -120,4 +120,4 @@ std::uint64_t merge_lines(WorkingMesh& mesh, const std::vector<std::uint8_t>& is
   return LineMerger(mesh, is_fixed, tolerance, leeway).run();
 }
 
-}  // namespace octafront::remeshing
+}  // namespace octafront::surface

@@ -6,7 +6,7 @@
 #include <cstdint>
 #include <vector>
 
-namespace octafront::remeshing {
+namespace octafront::surface {
 
 /// Closes what feature lines leave too narrow for an element: lines that part at a few degrees, that run side by side,
 /// or that nearly touch. Such lines are mostly one line of the input, drawn with needles. The short edge of a bad
@@ -17,4 +17,4 @@ namespace octafront::remeshing {
 std::uint64_t merge_lines(WorkingMesh& mesh, const std::vector<std::uint8_t>& is_fixed, double tolerance,
                           const Leeway& leeway);
 
-}  // namespace octafront::remeshing
+}  // namespace octafront::surface

@@ -5,7 +5,7 @@
 
 #include <fmt/core.h>
 
-namespace octafront::remeshing {
+namespace octafront::surface {
 
 double ElementBudget::expected(const SizeField& sizes) {
   if (!expected_) expected_.emplace(surface_);
@@ -36,4 +36,4 @@ void ElementBudget::note(std::size_t far, double farthest, double deviation) con
                   asked_ / 1e6, most_ / 1e6, floor_, left, by));
 }
 
-}  // namespace octafront::remeshing
+}  // namespace octafront::surface

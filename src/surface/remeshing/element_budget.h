@@ -3,13 +3,13 @@
 #include <octafront/size_field.h>
 
 #include "base/core/stage.h"
-#include "sizing/search/budget.h"
+#include "sizing/sources/budget.h"
 
 #include <cmath>
 #include <cstddef>
 #include <optional>
 
-namespace octafront::remeshing {
+namespace octafront::surface {
 
 /// The elements that sizes may come to, by the prediction, and what was given up for it. Refers to the surface.
 class ElementBudget {
@@ -39,4 +39,4 @@ class ElementBudget {
   int spent_in_round_ = 0;
 };
 
-}  // namespace octafront::remeshing
+}  // namespace octafront::surface

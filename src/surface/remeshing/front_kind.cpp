@@ -2,11 +2,11 @@
 
 #include "base/core/parallel.h"
 #include "base/geometry/measures.h"
-#include "surface/folds/mend_folds.h"
+#include "surface/remeshing/mend_folds.h"
 
 #include <algorithm>
 
-namespace octafront::remeshing {
+namespace octafront::surface {
 
 namespace {
 
@@ -77,4 +77,4 @@ double longest_edge_of(const TriangleCorners& t) {
   return std::max({distance(t[0], t[1]), distance(t[1], t[2]), distance(t[2], t[0])});
 }
 
-}  // namespace octafront::remeshing
+}  // namespace octafront::surface

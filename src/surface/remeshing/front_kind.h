@@ -3,18 +3,18 @@
 // The steps of a round in which single surfaces and complexes differ. One object is chosen before the first round.
 
 #include "base/mesh/features.h"
-#include "surface/check/surface_check.h"
+#include "surface/lines/narrow_strips.h"
+#include "surface/lines/seams.h"
 #include "surface/remeshing/outcome.h"
 #include "surface/remeshing/round_sizes.h"
-#include "surface/seams/seams.h"
-#include "surface/sizes/narrow_strips.h"
+#include "surface/remeshing/surface_check.h"
 
 #include <memory>
 #include <optional>
 #include <string>
 #include <vector>
 
-namespace octafront::remeshing {
+namespace octafront::surface {
 
 /// Sizes around crossing triangles become this part of what they were ...
 inline constexpr double kCap = 0.6;
@@ -95,4 +95,4 @@ inline constexpr std::int64_t kFewCrossing = 300;
 /// The longest edge of a triangle.
 double longest_edge_of(const TriangleCorners& t);
 
-}  // namespace octafront::remeshing
+}  // namespace octafront::surface

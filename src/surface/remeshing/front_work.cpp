@@ -2,7 +2,7 @@
 
 #include <cmath>
 
-namespace octafront::remeshing {
+namespace octafront::surface {
 
 void FrontCounts::start_round(std::uint64_t points_placed, std::uint64_t places_tried) {
   placed = points_placed;
@@ -39,4 +39,4 @@ void FrontWork::progress(double part_of_round) const {
   stage.progress(1 - std::ldexp(1 - part_of_round / 2, 1 - counts.rounds));
 }
 
-}  // namespace octafront::remeshing
+}  // namespace octafront::surface

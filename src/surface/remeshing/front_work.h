@@ -10,15 +10,15 @@
 #include "base/mesh/periodic_cell.h"
 #include "surface/edits/coarsen.h"
 #include "surface/front/insertion.h"
+#include "surface/front/shaping.h"
 #include "surface/lines/curves.h"
 #include "surface/remeshing/element_budget.h"
 #include "surface/remeshing/remesh.h"
-#include "surface/shaping/shaping.h"
 
 #include <span>
 #include <vector>
 
-namespace octafront::remeshing {
+namespace octafront::surface {
 
 struct FrontCounts {
   static constexpr std::uint64_t kJudgedAnyway = 20'000, kJudgedPerTriangle = 2;
@@ -97,4 +97,4 @@ struct Draft {
   bool is_clear = false;  ///< it is known that nothing crosses
 };
 
-}  // namespace octafront::remeshing
+}  // namespace octafront::surface

@@ -3,8 +3,8 @@
 #include "base/core/conjugate_gradients.h"
 #include "base/core/groups.h"
 #include "base/mesh/complex.h"
-#include "surface/check/surface_check.h"
-#include "surface/ground/crossings.h"
+#include "surface/edits/crossings.h"
+#include "surface/remeshing/surface_check.h"
 
 #include <algorithm>
 #include <cmath>
@@ -201,7 +201,7 @@ std::uint64_t keep_volumes(SurfaceMesh& surface, const Features& features, std::
   return Keeper(surface, features, wanted, fixed).run(too_far, context);
 }
 
-namespace remeshing {
+namespace surface {
 
 std::vector<VertexIndex> vertices_in_crossings(const SurfaceMesh& surface) {
   std::vector<VertexIndex> found;
@@ -223,5 +223,5 @@ std::uint64_t keep_volumes_clean(SurfaceMesh& surface, const Features& features,
   return 0;
 }
 
-}  // namespace remeshing
+}  // namespace surface
 }  // namespace octafront

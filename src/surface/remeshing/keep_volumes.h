@@ -24,7 +24,7 @@ std::uint64_t keep_volumes(SurfaceMesh& surface, const Features& features, std::
                            const TooFar& too_far, std::span<const VertexIndex> fixed = {},
                            const RunContext& context = no_context());
 
-namespace remeshing {
+namespace surface {
 
 /// The same of a clean surface or complex, which stays one: nothing crosses, and regions agree.
 std::uint64_t keep_volumes_clean(SurfaceMesh& surface, const Features& features, std::span<const double> wanted,
@@ -33,5 +33,5 @@ std::uint64_t keep_volumes_clean(SurfaceMesh& surface, const Features& features,
 /// Vertices of triangles that cross, ascending.
 std::vector<VertexIndex> vertices_in_crossings(const SurfaceMesh& surface);
 
-}  // namespace remeshing
+}  // namespace surface
 }  // namespace octafront

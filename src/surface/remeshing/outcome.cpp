@@ -1,12 +1,12 @@
 #include "surface/remeshing/outcome.h"
 
-#include "surface/ground/crossings.h"
-#include "surface/seams/seams.h"
+#include "surface/edits/crossings.h"
+#include "surface/lines/seams.h"
 
 #include <algorithm>
 #include <utility>
 
-namespace octafront::remeshing {
+namespace octafront::surface {
 
 namespace {
 
@@ -99,4 +99,4 @@ std::vector<std::uint32_t> triangles_of(const std::vector<std::array<std::uint32
   return triangles;
 }
 
-}  // namespace octafront::remeshing
+}  // namespace octafront::surface

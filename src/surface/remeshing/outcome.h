@@ -8,7 +8,7 @@
 #include <cstdint>
 #include <vector>
 
-namespace octafront::remeshing {
+namespace octafront::surface {
 
 /// Numbered anew in their order.
 struct Outcome {
@@ -31,4 +31,4 @@ std::vector<std::uint8_t> crossing_triangles(const WorkingMesh& mesh);
 /// The triangles of the pairs, each once, ascending.
 std::vector<std::uint32_t> triangles_of(const std::vector<std::array<std::uint32_t, 2>>& pairs);
 
-}  // namespace octafront::remeshing
+}  // namespace octafront::surface

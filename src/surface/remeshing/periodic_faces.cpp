@@ -7,7 +7,7 @@
 #include <utility>
 #include <vector>
 
-namespace octafront::remeshing {
+namespace octafront::surface {
 
 namespace {
 
@@ -241,4 +241,4 @@ void copy_periodic_faces(const SurfaceMesh& input, const PeriodicFaces& periods,
   if (periods.cell.is_periodic()) FaceCopier(input, periods, made).run();
 }
 
-}  // namespace octafront::remeshing
+}  // namespace octafront::surface

@@ -5,7 +5,7 @@
 #include "base/mesh/periodic_cell.h"
 #include "surface/remeshing/outcome.h"
 
-namespace octafront::remeshing {
+namespace octafront::surface {
 
 /// The sizes, made smaller where they are smaller at a copy of the place: on opposite faces they are the same up to a
 /// percent, and around edges and corners of the cell.
@@ -16,4 +16,4 @@ SizeField periodic_sizes(const SizeField& sizes, const SurfaceMesh& input, const
 /// borders of faces have their copies already; others are added.
 void copy_periodic_faces(const SurfaceMesh& input, const PeriodicFaces& periods, Outcome& made);
 
-}  // namespace octafront::remeshing
+}  // namespace octafront::surface

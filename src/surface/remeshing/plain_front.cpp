@@ -1,18 +1,18 @@
 // The steps of a single surface.
 
 #include "base/geometry/measures.h"
-#include "surface/folds/draw_to_input.h"
 #include "surface/lines/merge_lines.h"
+#include "surface/lines/thinned.h"
+#include "surface/remeshing/draw_to_input.h"
+#include "surface/remeshing/far_places.h"
 #include "surface/remeshing/front_kind.h"
-#include "surface/remeshing/nearness.h"
-#include "surface/sizes/thinned.h"
 
 #include <algorithm>
 #include <cmath>
 #include <limits>
 #include <utility>
 
-namespace octafront::remeshing {
+namespace octafront::surface {
 
 namespace {
 
@@ -269,4 +269,4 @@ std::unique_ptr<FrontKind> make_plain_front(FrontWork& work) {
   return std::make_unique<PlainFront>(work);
 }
 
-}  // namespace octafront::remeshing
+}  // namespace octafront::surface

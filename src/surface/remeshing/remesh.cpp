@@ -2,10 +2,10 @@
 
 #include "base/core/validate.h"
 #include "base/geometry/measures.h"
-#include "surface/front/front.h"
-#include "surface/ground/crossings.h"
-#include "surface/ground/source_triangles.h"
-#include "surface/ground/turning.h"
+#include "surface/edits/crossings.h"
+#include "surface/edits/source_triangles.h"
+#include "surface/edits/turning.h"
+#include "surface/front/surface_front.h"
 #include "surface/remeshing/front_kind.h"
 #include "surface/remeshing/periodic_faces.h"
 
@@ -21,7 +21,7 @@ namespace octafront {
 
 namespace {
 
-using namespace remeshing;
+using namespace surface;
 
 /// Rounds of capping the sizes around what crosses. CT isosurfaces of half a million triangles need up to 16.
 constexpr int kMostRounds = 24;

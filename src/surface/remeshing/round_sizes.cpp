@@ -1,12 +1,12 @@
 #include "surface/remeshing/round_sizes.h"
 
 #include "base/geometry/measures.h"
-#include "surface/sizes/thinned.h"
+#include "surface/lines/thinned.h"
 
 #include <algorithm>
 #include <utility>
 
-namespace octafront::remeshing {
+namespace octafront::surface {
 
 void RoundSizes::cap(const std::vector<Vec3>& places, double factor) {
   std::vector<PointSize> wanted;
@@ -67,4 +67,4 @@ void RoundSizes::forget_caps() {
   }
 }
 
-}  // namespace octafront::remeshing
+}  // namespace octafront::surface

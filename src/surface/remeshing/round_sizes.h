@@ -4,12 +4,12 @@
 
 #include "base/core/function_ref.h"
 #include "sizing/field/change_size_field.h"
-#include "surface/ground/kept_places.h"
+#include "surface/edits/kept_places.h"
 
 #include <optional>
 #include <vector>
 
-namespace octafront::remeshing {
+namespace octafront::surface {
 
 /// Asked of a place where triangles cross: the ball around it in which the input's own triangles return, or nothing
 /// while smaller sizes may still help.
@@ -61,4 +61,4 @@ class RoundSizes {
   std::vector<KeptPlace> kept_places_;
 };
 
-}  // namespace octafront::remeshing
+}  // namespace octafront::surface

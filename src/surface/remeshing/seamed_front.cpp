@@ -3,20 +3,21 @@
 #include "base/core/elementary.h"
 #include "base/geometry/measures.h"
 #include "base/mesh/complex.h"
-#include "surface/folds/draw_to_input.h"
-#include "surface/ground/crossings.h"
+#include "surface/edits/crossings.h"
+#include "surface/lines/corner_sizes.h"
+#include "surface/lines/flat_sizes.h"
+#include "surface/lines/least_sizes.h"
+#include "surface/remeshing/draw_to_input.h"
+#include "surface/remeshing/far_places.h"
 #include "surface/remeshing/front_kind.h"
-#include "surface/remeshing/nearness.h"
 #include "surface/remeshing/periodic_faces.h"
-#include "surface/sizes/corner_sizes.h"
-#include "surface/sizes/flat_sizes.h"
 
 #include <algorithm>
 #include <cmath>
 
 #include <fmt/core.h>
 
-namespace octafront::remeshing {
+namespace octafront::surface {
 
 namespace {
 
@@ -60,6 +61,9 @@ constexpr double kVainSlope = 0.1;
 /// many for each of its own triangles, raises of the bound from twice to four times it tell whether they are in vain.
 constexpr double kManyTimes = 3, kManyForEach = 8, kDoubled = 2, kFourfold = 4;
 
+/// A part of the elements that is said.
+constexpr double kWorthTelling = 0.2;
+
 /// Per vertex whether it is on a seam or another line.
 std::vector<std::uint8_t> on_lines(const WorkingMesh& mesh) {
   std::vector<std::uint8_t> is_fixed(mesh.points.size());
@@ -69,7 +73,7 @@ std::vector<std::uint8_t> on_lines(const WorkingMesh& mesh) {
 
 class SeamedFront : public FrontKind {
  public:
-  explicit SeamedFront(FrontWork& work) : FrontKind(work), seamed_(cut_along_seams(work.known, work.periods)) {}
+  explicit SeamedFront(FrontWork& work) : FrontKind(work), seamed_(cut_along_seams(work.known, work.periods)), least_(work.known, work.limits.least) {}
 
   InputSurface& input() override { return seamed_.input; }
   const Features& features() const override { return seamed_.features; }
@@ -89,13 +93,16 @@ class SeamedFront : public FrontKind {
       is_noise_ = follows_in_vain(curves, sizes.now(), foreseen);
       if (is_noise_) return;
     }
+    tell_part(sizes.now(), foreseen, "the deviation", "a larger `max_deviation` saves them");
     sizes.start_with(work_.budget.affordable(foreseen, sizes.first(), work_.counts.rounds));
   }
 
   /// Smaller where corners of seams are nearer together; the same on opposite faces of a cell.
   SizeField fitted(const SizeField& in_strips, const std::vector<std::uint8_t>& is_fixed) const override {
     const RunContext& context = work_.stage.context();
-    return periodic_sizes(fitted_to_corners(seamed_.input, seamed_, is_fixed, in_strips, work_.limits.least, context),
+    const SizeField in_corners = fitted_to_corners(seamed_.input, seamed_, is_fixed, in_strips, least_, context);
+    const std::vector<PointSize> small = least_.small_regions(in_corners);
+    return periodic_sizes(small.empty() ? in_corners : capped_at(in_corners, small, context, {.gradation = kSteep}),
                           work_.surface(), work_.periods, context);
   }
 
@@ -149,9 +156,23 @@ class SeamedFront : public FrontKind {
   }
 
  private:
+  std::vector<PointSize> not_below_least(std::vector<PointSize> wanted) const {
+    for (PointSize& w : wanted) w.size = std::max(w.size, least_.at(w.p));
+    return wanted;
+  }
+
+  /// What smaller sizes make of the elements, by the prediction.
+  void tell_part(const SizeField& without, const SizeField& with, const char* what, const char* advice) {
+    const double part = 1 - std::min(1.0, work_.budget.expected(without) / work_.budget.expected(with));
+    work_.stage.count(fmt::format("made for {}, % of the elements", what), 100 * part);
+    if (part > kWorthTelling)
+      work_.stage.note(fmt::format("{} makes about {:.2g} % of the elements: {}", what, 100 * part, advice));
+  }
+
   SizeField followed_within(double tolerance, const std::vector<Curve>& curves, const SizeField& sizes) const {
     const RunContext& context = work_.stage.context();
-    const std::vector<PointSize> wanted = sizes_by_flatness(seamed_.input, curves, sizes, tolerance, context);
+    const std::vector<PointSize> wanted =
+        not_below_least(sizes_by_flatness(seamed_.input, curves, sizes, tolerance, context));
     return capped_at(sizes, wanted, context, {.gradation = kSteep});
   }
 
@@ -240,7 +261,7 @@ class SeamedFront : public FrontKind {
   }
 
   std::vector<PointSize> note_wanted(Draft& draft, const std::vector<FarPlace>& places) const {
-    std::vector<PointSize> wanted = sizes_against(places, work_.tolerance, draft.sizes);
+    std::vector<PointSize> wanted = not_below_least(sizes_against(places, work_.tolerance, draft.sizes));
     draft.nearness.wanted.insert(draft.nearness.wanted.end(), wanted.begin(), wanted.end());
     return wanted;
   }
@@ -322,6 +343,7 @@ class SeamedFront : public FrontKind {
   }
 
   SeamedSurface seamed_;
+  LeastSizes least_;
   bool is_noise_ = false;
 };
 
@@ -331,4 +353,4 @@ std::unique_ptr<FrontKind> make_seamed_front(FrontWork& work) {
   return std::make_unique<SeamedFront>(work);
 }
 
-}  // namespace octafront::remeshing
+}  // namespace octafront::surface

@@ -2,9 +2,9 @@
 
 #include <octafront/validity.h>
 
-#include "base/comm/virtual_ranks.h"
 #include "base/mesh/tet_meshes.h"
 #include "base/shared/shared_defects.h"
+#include "base/shared/virtual_ranks.h"
 
 #include <algorithm>
 #include <functional>

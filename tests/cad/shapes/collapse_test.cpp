@@ -1,6 +1,5 @@
-#include "cad/shapes/collapse.h"
-
-#include "cad/shapes/groups.h"
+#include "cad/shapes/collapse_tiny.h"
+#include "cad/shapes/face_groups.h"
 
 #include <algorithm>
 #include <cmath>

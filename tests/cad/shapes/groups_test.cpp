@@ -1,6 +1,5 @@
-#include "cad/shapes/groups.h"
-
 #include "../half_pipe.h"
+#include "cad/shapes/face_groups.h"
 #include "cad/shapes/names.h"
 
 #include <cmath>

@@ -1,5 +1,4 @@
-#include "cad/shapes/nearest.h"
-
+#include "cad/shapes/nearest_on.h"
 #include "cad/shapes/nurbs.h"
 
 #include <cmath>

@@ -2,7 +2,7 @@
 
 #include <octafront/octafront_c.h>
 
-#include "base/comm/virtual_ranks.h"
+#include "base/shared/virtual_ranks.h"
 #include "doors/c_api/job_ranks.h"
 #include "support/named_surfaces.h"
 

@@ -5,7 +5,7 @@
 #include <octafront/image.h>
 #include <octafront/validity.h>
 
-#include "base/comm/virtual_ranks.h"
+#include "base/shared/virtual_ranks.h"
 #include "support/named_surfaces.h"
 
 #include <functional>

@@ -2,10 +2,10 @@
 
 #include <octafront/validity.h>
 
-#include "base/comm/virtual_ranks.h"
 #include "base/core/random.h"
 #include "base/mesh/tet_key.h"
 #include "base/shared/shared_tets.h"
+#include "base/shared/virtual_ranks.h"
 #include "fill/front/filled_sphere.h"
 
 #include <algorithm>

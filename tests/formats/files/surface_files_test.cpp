@@ -1,8 +1,8 @@
 #include <octafront/error.h>
 #include <octafront/io.h>
 
+#include "formats/files/formats.h"
 #include "formats/small_files.h"
-#include "formats/table/formats.h"
 #include "support/complexes.h"
 #include "support/named_surfaces.h"
 

@@ -2,11 +2,15 @@
 #include <octafront/image.h>
 
 #include "images/files/label_names.h"
+#include "images/labels/runs.h"
 #include "images/labels/thinness.h"
 #include "images/small_images.h"
 
 #include <algorithm>
+#include <array>
+#include <cmath>
 #include <random>
+#include <set>
 
 #include <gtest/gtest.h>
 
@@ -186,6 +190,73 @@ TEST(Cleaning, VolumesAreThoseOfTheWorld) {
   EXPECT_EQ(cleaned(image, options).regions, image.regions);
   options.islands = 6.001;
   EXPECT_EQ(cleaned(image, options).regions[0], kOut);
+}
+
+/// A layer of c, one voxel thick, between a and b; a reaches b through a square hole of `hole` voxels.
+LabelImage layers_with_hole(std::uint32_t hole) {
+  constexpr std::uint32_t n = 20;
+  std::vector<std::uint16_t> regions;
+  for (std::uint32_t v = 0; v < n * n * n; ++v) {
+    const std::uint32_t i = v % n, j = v / n % n, k = v / (n * n);
+    const bool in_hole = i >= 7 && i < 7 + hole && j >= 7 && j < 7 + hole;
+    regions.push_back(k < 10 ? 0 : k > 10 ? 1 : in_hole ? 0 : 2);
+  }
+  return label_image({n, n, n}, regions, 3);
+}
+
+TEST(Cleaning, ASmallContactGoesToWhatLiesAroundIt) {
+  CleanOptions options;
+  options.contacts = 16;
+  const LabelImage closed = cleaned(layers_with_hole(2), options);
+  EXPECT_EQ(closed.regions, layers_with_hole(0).regions);
+  EXPECT_TRUE(any_contains(closed.notes, "1 spot cleared, by 4 voxels: \"a\" and \"b\" 1"));
+  const LabelImage wide = layers_with_hole(6);
+  EXPECT_EQ(cleaned(wide, options).regions, wide.regions);
+  options.contacts = 1;  // edges of one voxel: nothing is smaller
+  EXPECT_EQ(cleaned(layers_with_hole(2), options).regions, layers_with_hole(2).regions);
+}
+
+/// How many pieces each region has.
+std::vector<std::size_t> pieces_of(const LabelImage& image) {
+  const image::Runs runs(image.grid.size, image.regions);
+  std::vector<std::set<std::uint32_t>> pieces(image.labels.size());
+  for (std::size_t r = 0; r < runs.size(); ++r)
+    if (runs.run(r).region != kOut) pieces[runs.run(r).region].insert(runs.piece()[r]);
+  std::vector<std::size_t> counts;
+  for (const auto& of : pieces) counts.push_back(of.size());
+  return counts;
+}
+
+TEST(Cleaning, SmallContactsCostNoRegionAndCutNone) {
+  for (unsigned seed = 1; seed <= 6; ++seed) {
+    // Cells around random points, their borders shaken by a voxel: contacts of all sizes.
+    std::mt19937 random(seed);
+    constexpr std::uint32_t n = 32;
+    std::array<Vec3, 9> seeds;
+    for (Vec3& p : seeds) p = {double(random() % n), double(random() % n), double(random() % n)};
+    std::vector<std::uint16_t> regions;
+    for (std::uint32_t v = 0; v < n * n * n; ++v) {
+      const Vec3 p{double(v % n), double(v / n % n), double(v / (n * n))};
+      std::uint16_t best = 0;
+      double least = HUGE_VAL;
+      for (std::uint16_t s = 0; s < seeds.size(); ++s) {
+        const double away = length(p - seeds[s]) + double(random() % 3);
+        if (away < least) least = away, best = s;
+      }
+      regions.push_back(best == 8 ? kOut : best);
+    }
+    CleanOptions islands, contacts;
+    islands.islands = 8;
+    contacts.contacts = 16;
+    const LabelImage before = cleaned(label_image({n, n, n}, regions, 8), islands);
+    const LabelImage after = cleaned(before, contacts);
+    EXPECT_NE(after.regions, before.regions);
+    const auto was = pieces_of(before), is = pieces_of(after);
+    for (std::size_t l = 0; l < was.size(); ++l) {
+      EXPECT_LE(is[l], was[l]) << "label " << l << ", seed " << seed;
+      EXPECT_EQ(is[l] == 0, was[l] == 0);
+    }
+  }
 }
 
 TEST(Cleaning, HolesInsideAreFilledAndBaysAreNot) {

@@ -204,7 +204,9 @@ TEST(ImageOptions, FollowTheVoxelsUnlessToldOtherwise) {
   asked.size.size = 12;  // coarser than voxels: the size rules
   made = options_for_voxels(asked, 2);
   EXPECT_GT(*made.surface.max_deviation, 2);
-  EXPECT_EQ(made.size.min_size, 6);
+  EXPECT_EQ(made.surface.finest, 6);
+  EXPECT_FALSE(made.size.gap);  // layers get flat elements
+  EXPECT_FALSE(made.size.min_size);
   EXPECT_NE(given_up_for_size(asked, 2), "");
   EXPECT_GT(made.surface.angle_of_features(), asked.surface.angle_of_features());
   asked.surface.max_deviation = 3;

@@ -5,11 +5,11 @@
 #include "base/core/thread_limit.h"
 #include "base/geometry/measures.h"
 #include "base/geometry/predicates.h"
-#include "improve/boundary/input_force.h"
 #include "improve/passes/explain.h"
 #include "improve/passes/fewest_poor.h"
 #include "improve/passes/poor_tets.h"
 #include "improve/passes/vertex_stars.h"
+#include "improve/shape/input_force.h"
 #include "improve/start_meshes.h"
 #include "support/complexes.h"
 

@@ -1,11 +1,10 @@
-#include "improve/pieces/pieces.h"
-
 #include <octafront/validity.h>
 
-#include "base/comm/virtual_ranks.h"
 #include "base/mesh/features.h"
 #include "base/mesh/tet_key.h"
+#include "base/shared/virtual_ranks.h"
 #include "improve/passes/passes.h"
+#include "improve/schedule/mesh_of_pieces.h"
 #include "improve/start_meshes.h"
 
 #include <algorithm>

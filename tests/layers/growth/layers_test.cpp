@@ -6,8 +6,8 @@
 #include <octafront/validity.h>
 
 #include "base/geometry/measures.h"
-#include "layers/columns/assemble.h"
 #include "layers/growth/grow.h"
+#include "layers/growth/with_layers.h"
 #include "support/named_surfaces.h"
 #include "support/test_folder.h"
 

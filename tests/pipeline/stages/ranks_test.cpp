@@ -4,7 +4,7 @@
 #include <octafront/generate.h>
 #include <octafront/validity.h>
 
-#include "base/comm/virtual_ranks.h"
+#include "base/shared/virtual_ranks.h"
 #include "support/complexes.h"
 #include "support/named_surfaces.h"
 

@@ -1,11 +1,11 @@
 #include "surface/edits/local_guards.h"
 
 #include "base/geometry/measures.h"
-#include "surface/ground/walk.h"
+#include "surface/edits/walk.h"
 
 #include <gtest/gtest.h>
 
-namespace octafront::remeshing {
+namespace octafront::surface {
 namespace {
 
 /// A bar whose top is two fans of n triangles on both sides of a diagonal: what is between two divided lines.
@@ -50,4 +50,4 @@ TEST(LocalGuards, FansOnBothSidesOfALongEdgeBecomeAStrip) {
 }
 
 }  // namespace
-}  // namespace octafront::remeshing
+}  // namespace octafront::surface

@@ -9,7 +9,7 @@
 
 #include <gtest/gtest.h>
 
-namespace octafront::remeshing {
+namespace octafront::surface {
 namespace {
 
 constexpr double kFeatureAngle = 40;
@@ -79,4 +79,4 @@ TEST(WorkingMesh, FindsWhatIsBroken) {
 }
 
 }  // namespace
-}  // namespace octafront::remeshing
+}  // namespace octafront::surface

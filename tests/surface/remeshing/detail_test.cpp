@@ -4,12 +4,12 @@
 
 #include "base/geometry/measures.h"
 #include "support/named_surfaces.h"
-#include "surface/check/surface_check.h"
-#include "surface/folds/unfold.h"
-#include "surface/ground/crossings.h"
-#include "surface/ground/deviation.h"
-#include "surface/ground/kept_places.h"
+#include "surface/edits/crossings.h"
+#include "surface/edits/deviation.h"
+#include "surface/edits/kept_places.h"
 #include "surface/remeshing/remesh.h"
+#include "surface/remeshing/surface_check.h"
+#include "surface/remeshing/unfold.h"
 
 #include <algorithm>
 #include <numbers>
@@ -23,12 +23,12 @@ namespace {
 
 using namespace octafront::testing;
 
-remeshing::InputSurface input_surface(const SurfaceMesh& surface) {
-  return remeshing::make_input_surface(surface, make_edge_table(surface.points.size(), surface.triangles));
+surface::InputSurface input_surface(const SurfaceMesh& surface) {
+  return surface::make_input_surface(surface, make_edge_table(surface.points.size(), surface.triangles));
 }
 
-std::optional<remeshing::Unfolded> unfold(const SurfaceMesh& surface, double tolerance) {
-  return remeshing::unfold(surface, make_edge_table(surface.points.size(), surface.triangles), tolerance, {});
+std::optional<surface::Unfolded> unfold(const SurfaceMesh& surface, double tolerance) {
+  return surface::unfold(surface, make_edge_table(surface.points.size(), surface.triangles), tolerance, {});
 }
 
 constexpr double kDegree = std::numbers::pi / 180;
@@ -82,7 +82,7 @@ double counter(const StageReport& report, const std::string& key) {
 
 TEST(Unfold, TakesAwayAFoldWithinTheTolerance) {
   const SurfaceMesh folded = folded_sphere();
-  ASSERT_TRUE(remeshing::find_crossings(folded).empty());
+  ASSERT_TRUE(surface::find_crossings(folded).empty());
   ASSERT_LT(sharpest(folded), 25 * kDegree);
   const auto unfolded = unfold(folded, 0.3);
   ASSERT_TRUE(unfolded.has_value());
@@ -156,9 +156,9 @@ TEST(MergeLines, AStripWithAPatchOfItsOwnIsNotLost) {
 
 TEST(KeptPlaces, TrianglesThatReachIntoABallStayWhole) {
   const SurfaceMesh ball = icosphere(2);
-  remeshing::InputSurface input = input_surface(ball);
+  surface::InputSurface input = input_surface(ball);
   const Vec3 center = input.mesh.points[0];
-  const auto fixed = remeshing::mark_kept_places(input, TriangleTree(ball), {{center, 0.01}});
+  const auto fixed = surface::mark_kept_places(input, TriangleTree(ball), {{center, 0.01}});
   std::size_t lines = 0;
   for (const std::uint8_t f : input.mesh.is_feature) lines += f;
   std::size_t triangles = 0;
@@ -205,7 +205,7 @@ SurfaceMesh capped_ball(double gap) {
 
 TEST(Fallback, IsLocal) {
   const SurfaceMesh capped = capped_ball(1e-4);
-  ASSERT_TRUE(remeshing::find_crossings(capped).empty());
+  ASSERT_TRUE(surface::find_crossings(capped).empty());
   StageReport report;
   const Remeshed made = remesh_within(capped, 0.25, report, 0.0);
   EXPECT_GT(counter(report, "places left as in the input"), 0);
@@ -221,11 +221,11 @@ TEST(Fallback, IsLocal) {
   EXPECT_GT(coarse, 0.9 * static_cast<double>(all));
 }
 
-std::vector<remeshing::FarPlace> places_beyond(double limit, const SurfaceMesh& made, const SurfaceMesh& input) {
+std::vector<surface::FarPlace> places_beyond(double limit, const SurfaceMesh& made, const SurfaceMesh& input) {
   std::vector<std::uint32_t> number(made.triangles.size());
   std::iota(number.begin(), number.end(), 0u);
   const TriangleTree tree(input);
-  return remeshing::DeviationWatch(limit, limit, input, tree).look(made, number);
+  return surface::DeviationWatch(limit, limit, input, tree).look(made, number);
 }
 
 /// A sphere with a bump narrower than the triangles that are to come: vertices pass it by.
@@ -242,7 +242,7 @@ TEST(Approach, MendsAPlaceThatStraysWithoutAnotherRound) {
   const Remeshed made = remesh_within(input, 0.25, report, 0.02);
   EXPECT_EQ(counter(report, "rounds"), 1);
   EXPECT_GT(counter(report, "points against deviation"), 0);
-  EXPECT_TRUE(remeshing::find_crossings(made.surface).empty());
+  EXPECT_TRUE(surface::find_crossings(made.surface).empty());
   EXPECT_TRUE(places_beyond(0.02, made.surface, input).empty());
 }
 
@@ -265,23 +265,23 @@ TEST(DeviationWatch, FindsAgainWhatAllAnewWouldFind) {
   SurfaceMesh made = icosphere(4);
   std::vector<std::uint32_t> number(made.triangles.size());
   std::iota(number.begin(), number.end(), 10u);
-  remeshing::DeviationWatch watch(0.01, 0.02, input, tree);
-  const auto triangles_at = [](const std::vector<remeshing::FarPlace>& places) {
+  surface::DeviationWatch watch(0.01, 0.02, input, tree);
+  const auto triangles_at = [](const std::vector<surface::FarPlace>& places) {
     std::set<std::uint32_t> found;
-    for (const remeshing::FarPlace& place : places) found.insert(place.triangle);
+    for (const surface::FarPlace& place : places) found.insert(place.triangle);
     return found;
   };
   EXPECT_FALSE(watch.look(made, number).empty());
   for (const double height : {0.05, -0.03, 0.0}) {
     made.points[made.triangles[7][1]] *= 1 + height;
     const auto again = triangles_at(watch.look(made, number));
-    EXPECT_EQ(again, triangles_at(remeshing::DeviationWatch(0.01, 0.02, input, tree).look(made, number)));
+    EXPECT_EQ(again, triangles_at(surface::DeviationWatch(0.01, 0.02, input, tree).look(made, number)));
     EXPECT_EQ(again, triangles_at(watch.look(made, number)));
   }
   made.triangles.pop_back();  // it leaves a hole in the input's sight
   number.pop_back();
   EXPECT_EQ(triangles_at(watch.look(made, number)),
-            triangles_at(remeshing::DeviationWatch(0.01, 0.02, input, tree).look(made, number)));
+            triangles_at(surface::DeviationWatch(0.01, 0.02, input, tree).look(made, number)));
 }
 
 TEST(DeviationWatch, LooksCloserAtTrianglesWithABoundOfTheirOwn) {
@@ -292,11 +292,10 @@ TEST(DeviationWatch, LooksCloserAtTrianglesWithABoundOfTheirOwn) {
   std::vector<double> bound(input.triangles.size(), HUGE_VAL);
   for (std::size_t t = 0; t < bound.size(); ++t)
     if (input.points[input.triangles[t][0]].x > 0.5) bound[t] = 0.01;
-  EXPECT_TRUE(remeshing::DeviationWatch(0.04, 0.04, input, tree).look(made, number).empty());
-  const auto places =
-      remeshing::DeviationWatch(0.04, 0.04, input, tree, remeshing::Fine::kParts, bound).look(made, number);
+  EXPECT_TRUE(surface::DeviationWatch(0.04, 0.04, input, tree).look(made, number).empty());
+  const auto places = surface::DeviationWatch(0.04, 0.04, input, tree, surface::Fine::kParts, bound).look(made, number);
   EXPECT_FALSE(places.empty());
-  for (const remeshing::FarPlace& place : places) {
+  for (const surface::FarPlace& place : places) {
     EXPECT_GT(place.at.x, 0.35);
     EXPECT_GE(place.distance, 0.04);  // as many times more
   }
@@ -329,8 +328,8 @@ TEST(DeviationWatch, FindsWhatStraysFromStripsWithoutLookingAlongEachOfThem) {
   const auto pulled = std::ranges::min_element(made.points, {}, [](Vec3 p) { return distance(p, {1, 0, 1}); });
   pulled->x += 0.1;
   const auto places = places_beyond(0.04, made, input);
-  EXPECT_TRUE(std::ranges::any_of(places, [](const remeshing::FarPlace& place) { return place.within; }));
-  for (const remeshing::FarPlace& place : places) EXPECT_LT(distance(place.at, *pulled), 0.3);
+  EXPECT_TRUE(std::ranges::any_of(places, [](const surface::FarPlace& place) { return place.within; }));
+  for (const surface::FarPlace& place : places) EXPECT_LT(distance(place.at, *pulled), 0.3);
 }
 
 TEST(Coarsening, ComesToAnEndAtAHubOfThousandsOfTriangles) {
@@ -345,7 +344,7 @@ TEST(DeviationWatch, FindsFromBothSides) {
   for (const auto& [made, input] : {std::pair{&smooth, &spiked}, std::pair{&spiked, &smooth}}) {
     const auto places = places_beyond(0.05, *made, *input);
     ASSERT_FALSE(places.empty());
-    for (const remeshing::FarPlace& place : places)
+    for (const surface::FarPlace& place : places)
       EXPECT_LT(distance(place.at, spiked.points[spiked.triangles[7][1]]), 0.1);
   }
 }

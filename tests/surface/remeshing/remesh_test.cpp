@@ -7,15 +7,15 @@
 #include "base/geometry/measures.h"
 #include "base/mesh/feature_patches.h"
 #include "base/mesh/half_edge_mesh.h"
-#include "sizing/search/make_size_field.h"
+#include "sizing/sources/make_size_field.h"
 #include "support/faceted.h"
 #include "support/named_surfaces.h"
 #include "support/random.h"
 #include "surface/edits/coarsen.h"
-#include "surface/front/front.h"
+#include "surface/edits/crossings.h"
 #include "surface/front/insertion.h"
-#include "surface/ground/crossings.h"
-#include "surface/shaping/shaping.h"
+#include "surface/front/shaping.h"
+#include "surface/front/surface_front.h"
 
 #include <algorithm>
 #include <map>
@@ -160,7 +160,7 @@ TEST(Remesh, KeepsTopologyAndNeverCrossesItself) {
     const Remeshed r = remesh(sample.surface, sample.h);
     EXPECT_EQ(euler_characteristic(r.surface), euler_characteristic(sample.surface));
     EXPECT_EQ(component_count(r.surface), component_count(sample.surface));
-    EXPECT_TRUE(remeshing::find_crossings(r.surface).empty());
+    EXPECT_TRUE(surface::find_crossings(r.surface).empty());
     EXPECT_GT(enclosed_volume(r.surface), 0);
     EXPECT_EQ(r.source.size(), r.surface.triangles.size());
   }
@@ -424,13 +424,13 @@ TEST(Remesh, PointsOfLinesSideBySideFaceEachOther) {
 
 /// A working mesh of the surface by one size, as the front leaves it, with its curves.
 struct Drawn {
-  remeshing::InputSurface input;
-  std::vector<remeshing::Curve> curves;
-  remeshing::WorkingMesh mesh;
+  surface::InputSurface input;
+  std::vector<surface::Curve> curves;
+  surface::WorkingMesh mesh;
 };
 
 Drawn drawn(const SurfaceMesh& surface, double h) {
-  using namespace remeshing;
+  using namespace surface;
   const KnownSurface known(surface, 40);
   const SizeField sizes = SizeField::uniform(h);
   InputSurface input = make_input_surface(known.mesh(), known.edges());
@@ -444,7 +444,7 @@ Drawn drawn(const SurfaceMesh& surface, double h) {
   return {std::move(input), std::move(curves), std::move(mesh)};
 }
 
-double longest_edge(const remeshing::WorkingMesh& mesh) {
+double longest_edge(const surface::WorkingMesh& mesh) {
   double longest = 0;
   for (HalfEdge h = 0; h < mesh.start.size(); ++h)
     if (mesh.start[h] != kNone)
@@ -458,7 +458,7 @@ TEST(ImproveSurface, DividesAllLongEdgesOnceSizesAreSmaller) {
   EXPECT_GT(longest_edge(d.mesh), 0.5);
   const double h = 0.2;
   d.mesh.size.assign(d.mesh.size.size(), h);
-  remeshing::ImproveCounts counts;
+  surface::ImproveCounts counts;
   for (int k = 0; k < 3; ++k) improve_surface(d.mesh, d.input, d.curves, SizeField::uniform(h), {}, counts);
   EXPECT_LT(longest_edge(d.mesh), 1.6 * h);
 }

@@ -3,7 +3,7 @@
 #include <octafront/image.h>
 
 #include "images/files/dicom/slices.h"
-#include "images/files/readers.h"
+#include "images/files/image_readers.h"
 
 #include <functional>
 #include <string>

@@ -1,6 +1,6 @@
 #pragma once
 
-#include "images/files/readers.h"
+#include "images/files/image_readers.h"
 
 #include <optional>
 #include <string>

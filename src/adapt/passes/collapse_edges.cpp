@@ -1,0 +1,332 @@
+// Collapses of edges: one end goes to the other, the tets around the edge vanish.
+
+#include "adapt/passes/metric_passes.h"
+#include "adapt/passes/worth.h"
+
+#include <algorithm>
+#include <cmath>
+
+namespace octafront::adapt {
+namespace {
+
+/// An element that collapse makes has at least this score, or the worst one of those before: where a metric turns,
+/// what is short goes by way of poor elements, or not at all.
+constexpr float kLeastOfCollapse = 0.3f, kLeastOfCollapseInMetric = 0.1f;
+/// No edge that collapse makes is longer than this.
+constexpr double kLongestOfCollapse = kLongest;
+/// Edges of elements of a lower score go too, where that makes the place better by so much.
+constexpr float kPoorForCollapse = 0.3f, kPoorForCollapseInMetric = 0.55f, kGainOfPoor = 1.1f;
+constexpr int kMostRounds = 3;
+constexpr int kCheckCollapseEvery = 256;
+
+template <class T>
+void make_set(std::vector<T>& items) {
+  std::sort(items.begin(), items.end());
+  items.erase(std::unique(items.begin(), items.end()), items.end());
+}
+
+class EdgeCollapser {
+ public:
+  EdgeCollapser(Piece& piece, const Guide& guide, bool mends) : piece_(piece), guide_(guide), mends_(mends) {}
+
+  PassCount run() {
+    PassCount sum;
+    for (int round = 0; round < kMostRounds; ++round) {
+      const PassCount count = sweep(round);
+      sum += count;
+      if (count.done == 0) break;
+    }
+    return sum;
+  }
+
+ private:
+  struct Short {
+    double length;
+    Edge edge;
+    TetIndex tet;
+  };
+  /// One end at the other: what comes of it.
+  struct Plan {
+    VertexIndex gone = kNone, onto = kNone;
+    float worst = 0;
+    std::vector<TetIndex> old;
+    std::vector<Piece::NewTet> fresh;
+    std::vector<Piece::NewWall> walls;
+  };
+
+  PassCount sweep(int round) {
+    PassCount count;
+    const std::vector<Short> edges = short_edges(round);
+    for (const Short& s : edges) {
+      if (++steps_ % kCheckCollapseEvery == 0) guide_.context.check();
+      const TetIndex t = piece_.tet_with(s.edge[0], s.edge[1], s.tet);
+      if (t == kNone) continue;
+      ++count.tried;
+      if (!collapse(t, s.edge[0], s.edge[1])) continue;
+      ++count.done;
+      for (const TetIndex made : piece_.created())
+        for (const VertexIndex v : piece_.tet(made)) changed_[v] = round + 1;
+    }
+    return count;
+  }
+
+  /// Edges that are too short; in later rounds those where the round before changed something.
+  std::vector<Short> short_edges(int round) {
+    std::vector<Short> found;
+    changed_.resize(piece_.vertices.size(), 0);
+    seen_.resize(piece_.vertices.size(), 0);
+    const auto waits = [&](VertexIndex v) {
+      return round == 0 ? mends_ || piece_.vertices[v].active : changed_[v] == round;
+    };
+    for (TetIndex t = 0; t < piece_.complex.slots(); ++t) {
+      if (!piece_.complex.alive(t)) continue;
+      const Tet& c = piece_.tet(t);
+      const bool goes = mends_ ? is_to_mend(piece_, t)
+                               : piece_.score[t] < (piece_.isotropic ? kPoorForCollapse : kPoorForCollapseInMetric);
+      if (mends_ && !goes) continue;
+      for (const auto& [i, j] : kTetEdges) {
+        const Vertex &p = piece_.vertices[c[i]], &q = piece_.vertices[c[j]];
+        if (!(waits(c[i]) || waits(c[j])) || (!may_go(p) && !may_go(q))) continue;
+        const double l = piece_.edge_length(c[i], c[j]);
+        if (l < kShortest || goes) found.push_back({l, sorted_edge(c[i], c[j]), t});
+      }
+    }
+    const auto before = [](const Short& a, const Short& b) {
+      return a.length != b.length ? a.length < b.length : a.edge != b.edge ? a.edge < b.edge : a.tet < b.tet;
+    };
+    std::sort(found.begin(), found.end(), before);
+    found.erase(
+        std::unique(found.begin(), found.end(), [](const Short& a, const Short& b) { return a.edge == b.edge; }),
+        found.end());
+    return found;
+  }
+
+  static bool may_go(const Vertex& v) { return !v.rim && !v.frozen && !v.held && v.kind != Kind::kFixed; }
+
+  bool collapse(TetIndex t, VertexIndex a, VertexIndex b) {
+    if (!piece_.ring(t, a, b, ring_)) return false;
+    Plan one, other;
+    if (may_go(piece_.vertices[a])) plan(a, b, one);
+    if (may_go(piece_.vertices[b])) plan(b, a, other);
+    const Plan& best = other.worst > one.worst ? other : one;
+    if (!(best.worst > 0)) return false;
+    apply(best);
+    return true;
+  }
+
+  /// Whether the vertex may go to the other end as far as walls and lines are concerned.
+  bool kinds_allow(VertexIndex u, VertexIndex w) const {
+    const Vertex &from = piece_.vertices[u], &to = piece_.vertices[w];
+    switch (from.kind) {
+      case Kind::kInner:
+        return true;
+      case Kind::kCurve: {
+        const std::uint32_t* path = piece_.line(u, w);
+        return path && *path != Parts::kStays && !to.rim;
+      }
+      case Kind::kSurface:
+        return to.kind != Kind::kInner && !to.rim && ring_walls() == 2;
+      default:
+        return false;
+    }
+  }
+  /// How many walls the edge of the ring lies on.
+  int ring_walls() const {
+    int walls = 0;
+    for (std::size_t k = 0; k < ring_.tets.size(); ++k) {
+      const VertexIndex to = ring_.ring[(k + 1) % ring_.ring.size()];
+      walls += piece_.wall[piece_.complex.opposite(ring_.tets[k], to)] != 0;
+      if (!ring_.closed && k + 1 == ring_.tets.size())
+        walls += piece_.wall[piece_.complex.opposite(ring_.tets[k], ring_.ring[k])] != 0;
+    }
+    return walls;
+  }
+
+  void plan(VertexIndex u, VertexIndex w, Plan& out) {
+    if (!kinds_allow(u, w)) return;
+    const Kind kind = piece_.vertices[u].kind;
+    out.gone = u, out.onto = w;
+    if (!plan_tets(out)) return out.worst = 0, void();
+    if (kind != Kind::kInner && (!keeps_manifold(u, w) || !plan_walls(out))) out.worst = 0;
+  }
+
+  bool plan_tets(Plan& out) {
+    const std::vector<TetIndex>& star = piece_.star(out.gone);
+    out.old.assign(star.begin(), star.end());
+    float had = 1;
+    for (const TetIndex t : out.old) had = std::min(had, mends_ ? worth_of(piece_, piece_.tet(t)) : piece_.score[t]);
+    if (!mends_ && !lengths_allow(out)) return false;
+    const bool is_short = !mends_ && piece_.edge_length(out.gone, out.onto) < kShortest;
+    const float least =
+        is_short ? std::min(had, piece_.isotropic ? kLeastOfCollapse : kLeastOfCollapseInMetric) : kGainOfPoor * had;
+    out.worst = 1;
+    for (const TetIndex t : out.old) {
+      if (piece_.complex.has(t, out.onto)) continue;
+      Tet c = piece_.tet(t);
+      std::replace(c.begin(), c.end(), out.gone, out.onto);
+      const float s = piece_.score_of(c);
+      const float value = mends_ && s > 0 ? worth_of(piece_, c) : s;
+      if (!(value >= least) || !(s > 0)) return false;
+      out.worst = std::min(out.worst, value);
+      out.fresh.push_back({c, piece_.region[t], s});
+    }
+    return !out.fresh.empty();
+  }
+
+  /// Whether no new edge is longer than the longest there was, or than is wanted.
+  bool lengths_allow(const Plan& plan) {
+    around_.clear();
+    ++stamp_;
+    for (const TetIndex t : plan.old)
+      for (const VertexIndex v : piece_.tet(t))
+        if (v != plan.gone && v != plan.onto && seen_[v] != stamp_) seen_[v] = stamp_, around_.push_back(v);
+    double longest_had = -1;
+    for (const VertexIndex v : around_) {
+      const double l = piece_.edge_length(plan.onto, v);
+      if (l <= kLongestOfCollapse) continue;
+      if (longest_had < 0)
+        for (const VertexIndex u : around_) longest_had = std::max(longest_had, piece_.edge_length(plan.gone, u));
+      if (l > longest_had) return false;
+    }
+    return true;
+  }
+
+  /// The walls at the vertex that goes, with it at its new place; false if they would not be true, or lines would
+  /// merge.
+  bool plan_walls(Plan& out) {
+    const VertexIndex u = out.gone, w = out.onto;
+    std::vector<Wall> labels;
+    struct Change {
+      TriangleCorners corners;
+      Wall wall;
+      bool stays;
+    };
+    std::vector<Change> before, after;
+    for (const TetIndex t : out.old)
+      for (HalfFace h = 4 * t; h < 4 * t + 4; ++h) {
+        if (piece_.wall[h] == 0 || piece_.complex.apex(h) == u) continue;
+        if (!is_outside(piece_.complex.across[h]) && piece_.complex.across[h] < h) continue;
+        Triangle f = piece_.complex.face(h);
+        const bool vanishes = f[0] == w || f[1] == w || f[2] == w;
+        before.push_back({corners_of(f), piece_.wall[h], !vanishes});
+        if (vanishes) {
+          for (const VertexIndex x : f)
+            if (x != u && x != w && piece_.line(u, x) && piece_.line(w, x)) return false;
+          continue;
+        }
+        std::replace(f.begin(), f.end(), u, w);
+        after.push_back({corners_of(f), piece_.wall[h], true});
+        out.walls.push_back({f, piece_.wall[h]});
+      }
+    for (const Change& c : before) labels.push_back(c.wall);
+    make_set(labels);
+    for (const Wall label : labels) {
+      std::vector<TriangleCorners> had, has;
+      for (const Change& c : before)
+        if (c.wall == label) had.push_back(c.corners);
+      for (const Change& c : after)
+        if (c.wall == label) has.push_back(c.corners);
+      if (has.empty() || !keeps_walls_true(guide_, had, has, label)) return false;
+    }
+    return true;
+  }
+
+  TriangleCorners corners_of(const Triangle& f) const {
+    return {piece_.point(f[0]), piece_.point(f[1]), piece_.point(f[2])};
+  }
+
+  /// The link condition (T. Dey, H. Edelsbrunner, S. Guha, D. Nekhayev, "Topology preserving edge contraction", 1999),
+  /// for a vertex on walls: the tets on all sides, and the walls by themselves.
+  bool keeps_manifold(VertexIndex u, VertexIndex w) {
+    link_of(u, link_), link_of(w, other_link_);
+    edge_link_.clear(), edge_walls_.clear();
+    for (const TetIndex t : ring_.tets)
+      for (const VertexIndex v : piece_.tet(t))
+        if (v != u && v != w) edge_link_.push_back(v);
+    make_set(edge_link_);
+    return meet_only_in(link_.vertices, other_link_.vertices, edge_link_) && common_edges() == ring_.tets.size() &&
+           meet_only_in(link_.wall_vertices, other_link_.wall_vertices, walls_of_ring());
+  }
+
+  struct Link {
+    std::vector<VertexIndex> vertices, wall_vertices;
+    std::vector<Edge> edges;
+  };
+  void link_of(VertexIndex v, Link& link) {
+    link.vertices.clear(), link.wall_vertices.clear(), link.edges.clear();
+    for (const TetIndex t : piece_.star(v)) {
+      const HalfFace base = piece_.complex.opposite(t, v);
+      const Triangle f = piece_.complex.face(base);
+      for (int i = 0; i < 3; ++i) {
+        link.vertices.push_back(f[i]);
+        link.edges.push_back(sorted_edge(f[i], f[(i + 1) % 3]));
+        if (piece_.wall[piece_.complex.opposite(t, f[i])] == 0) continue;
+        link.wall_vertices.push_back(f[(i + 1) % 3]), link.wall_vertices.push_back(f[(i + 2) % 3]);
+      }
+    }
+    make_set(link.vertices), make_set(link.wall_vertices), make_set(link.edges);
+  }
+  static bool meet_only_in(const std::vector<VertexIndex>& a, const std::vector<VertexIndex>& b,
+                           const std::vector<VertexIndex>& allowed) {
+    std::vector<VertexIndex> common;
+    std::set_intersection(a.begin(), a.end(), b.begin(), b.end(), std::back_inserter(common));
+    return std::includes(allowed.begin(), allowed.end(), common.begin(), common.end());
+  }
+  std::size_t common_edges() const {
+    std::vector<Edge> common;
+    std::set_intersection(link_.edges.begin(), link_.edges.end(), other_link_.edges.begin(), other_link_.edges.end(),
+                          std::back_inserter(common));
+    return common.size();
+  }
+  /// The vertices of walls at the edge beside its ends.
+  const std::vector<VertexIndex>& walls_of_ring() {
+    for (std::size_t k = 0; k < ring_.tets.size(); ++k) {
+      const VertexIndex from = ring_.ring[k], to = ring_.ring[(k + 1) % ring_.ring.size()];
+      if (piece_.wall[piece_.complex.opposite(ring_.tets[k], to)] != 0) edge_walls_.push_back(from);
+      if (piece_.wall[piece_.complex.opposite(ring_.tets[k], from)] != 0) edge_walls_.push_back(to);
+    }
+    make_set(edge_walls_);
+    return edge_walls_;
+  }
+
+  void apply(const Plan& p) {
+    const VertexIndex u = p.gone, w = p.onto;
+    if (piece_.vertices[u].kind == Kind::kCurve) move_line(u, w, p.old);
+    piece_.replace(p.old, p.fresh, p.walls);
+    piece_.complex.tet_at[u] = kNone;
+  }
+
+  /// The line that led through u to w leads to w.
+  void move_line(VertexIndex u, VertexIndex w, const std::vector<TetIndex>& star) {
+    const std::uint32_t path = *piece_.line(u, w);
+    for (const TetIndex t : star)
+      for (const VertexIndex v : piece_.tet(t)) {
+        if (v == u || !piece_.line(u, v)) continue;
+        piece_.drop_line(u, v);
+        if (v != w) piece_.set_line(v, w, path);
+      }
+  }
+
+  Piece& piece_;
+  const Guide& guide_;
+  bool mends_;
+  EdgeRing ring_;
+  Link link_, other_link_;
+  std::vector<VertexIndex> edge_link_, edge_walls_, around_;
+  std::vector<int> changed_;         ///< per vertex: one more than the last round that changed something around it
+  std::vector<std::uint32_t> seen_;  ///< per vertex: the last stamp it got
+  std::uint32_t stamp_ = 0;
+  int steps_ = 0;
+};
+
+}  // namespace
+
+PassCount collapse_short_edges(Piece& piece, const Guide& guide) {
+  return EdgeCollapser(piece, guide, false).run();
+}
+
+PassCount collapse_poor(Piece& piece, const Guide& guide) {
+  return EdgeCollapser(piece, guide, true).run();
+}
+
+}  // namespace octafront::adapt

@@ -1,0 +1,218 @@
+#include "adapt/passes/piece.h"
+
+#include "base/core/validate.h"
+#include "base/geometry/predicates.h"
+
+#include <algorithm>
+#include <cmath>
+
+namespace octafront::adapt {
+namespace {
+
+/// Moves that change no score by more do not ask for other connections.
+constexpr float kLittleChange = 0.04f;
+
+}  // namespace
+
+Piece::Piece(const Parts& mesh, std::span<const TetIndex> tets, std::span<const Parts::Line> lines,
+             std::vector<VertexIndex>& here)
+    : isotropic(mesh.isotropic), lines_(lines.size()) {
+  std::vector<VertexIndex> taken;
+  complex.tets.reserve(tets.size() + tets.size() / 2);
+  region.reserve(tets.size());
+  wall.reserve(4 * tets.size());
+  for (const TetIndex t : tets) {
+    Tet corners = mesh.tets[t];
+    for (VertexIndex& v : corners) {
+      if (here[v] == kNone) {
+        here[v] = static_cast<VertexIndex>(vertices.size());
+        vertices.push_back(mesh.vertices[v]);
+        vertices.back().touched = vertices.back().active;
+        taken.push_back(v);
+      }
+      v = here[v];
+    }
+    complex.tets.push_back(corners);
+    region.push_back(mesh.region[t]);
+    wall.insert(wall.end(), mesh.wall[t].begin(), mesh.wall[t].end());
+  }
+  for (const Parts::Line& l : lines)
+    if (here[l.edge[0]] != kNone && here[l.edge[1]] != kNone) set_line(here[l.edge[0]], here[l.edge[1]], l.path);
+  for (const VertexIndex v : taken) here[v] = kNone;
+  connect();
+}
+
+void Piece::connect() {
+  complex.connect(vertices.size(), {});
+  for (HalfFace h = 0; h < complex.across.size(); ++h) {
+    if (complex.across[h] != kNone) continue;
+    complex.across[h] = (wall[h] & kOuter) != 0 ? kOutside : kBeyondRim;
+    if (complex.across[h] == kBeyondRim)
+      for (const VertexIndex v : complex.face(h)) vertices[v].rim = true;
+  }
+  score.resize(complex.tets.size());
+  for (TetIndex t = 0; t < score.size(); ++t) score[t] = score_of(tet(t));
+}
+
+float score_of_corners(const std::array<const Vertex*, 4>& c, bool isotropic) {
+  const Vec3 p = c[0]->at, q = c[1]->at, r = c[2]->at, s = c[3]->at;
+  const auto estimate = detail::orient3d_estimate(p, q, r, s);
+  const int certain = estimate.certain_sign();
+  if (certain < 0 || (certain == 0 && orient3d(p, q, r, s) <= 0)) return 0;
+  double worth = 0;
+  if (isotropic) {  // a size makes all lengths longer alike: the shape alone counts
+    worth = metric_score(estimate.det, p, q, r, s);
+  } else {
+    const Vertex& d = densest_of(c);
+    worth = metric_score(estimate.det, d.metric, d.density, p, q, r, s);
+  }
+  return std::max(static_cast<float>(worth), 1e-30f);
+}
+
+bool Piece::ring(TetIndex t, VertexIndex a, VertexIndex b, EdgeRing& out, float least) const {
+  const int i = complex.corner_of(t, a), j = complex.corner_of(t, b);
+  const auto is_fair = [&](TetIndex next) { return score[next] >= least; };
+  const TetComplex::Turn turn = complex.turn_around(t, i, j, out, is_fair);
+  if (turn != TetComplex::Turn::kOpen) return turn == TetComplex::Turn::kClosed;
+  if (complex.across[complex.opposite(out.tets.back(), out.ring[out.ring.size() - 2])] != kOutside) return false;
+  // What lies on the other side of t goes before it.
+  TetIndex at = t;
+  VertexIndex from = out.ring[0], to = out.ring[1];
+  for (;;) {
+    const HalfFace o = complex.across[complex.opposite(at, to)];
+    if (is_outside(o)) return o == kOutside;
+    at = o / 4;
+    if (!is_fair(at)) return false;
+    to = from;
+    from = complex.apex(o);
+    out.tets.insert(out.tets.begin(), at);
+    out.ring.insert(out.ring.begin(), from);
+  }
+}
+
+TetIndex Piece::tet_with(VertexIndex a, VertexIndex b, TetIndex guess) {
+  if (guess < complex.slots() && complex.alive(guess) && complex.has(guess, a) && complex.has(guess, b)) return guess;
+  if (complex.tet_at[a] == kNone || complex.tet_at[b] == kNone) return kNone;
+  for (const TetIndex t : star(a))
+    if (complex.has(t, b)) return t;
+  return kNone;
+}
+
+void Piece::toggle(const Triangle& corners, HalfFace across, Wall label) {
+  Rim& there = rim_.find_or_add(face_key(corners));
+  if (there.open)
+    there.open = false;
+  else
+    there = {across, label, true};
+}
+
+void Piece::tie(TetIndex t) {
+  for (HalfFace h = 4 * t; h < 4 * t + 4; ++h) {
+    Rim& there = rim_.find_or_add(face_key(complex.face(h)));
+    if (!there.open) {
+      there = {h, 0, true};
+      wall[h] = 0;
+      continue;
+    }
+    there.open = false;
+    wall[h] = there.wall;
+    complex.join(h, there.across);
+  }
+}
+
+TetIndex Piece::slot() {
+  if (!complex.free.empty()) {
+    const TetIndex t = complex.free.back();
+    complex.free.pop_back();
+    return t;
+  }
+  const TetIndex t = complex.slots();
+  complex.tets.push_back({});
+  complex.across.resize(4 * complex.tets.size(), kNone);
+  complex.marks.push_back(0);
+  region.push_back(0);
+  wall.resize(4 * complex.tets.size(), 0);
+  score.push_back(0);
+  return t;
+}
+
+void Piece::replace(std::span<const TetIndex> old, std::span<const NewTet> fresh, std::span<const NewWall> walls) {
+  rim_.reset(4 * (old.size() + fresh.size()));
+  for (const TetIndex t : old)
+    for (HalfFace h = 4 * t; h < 4 * t + 4; ++h) toggle(complex.face(h), complex.across[h], wall[h]);
+  for (const TetIndex t : old)
+    for (const VertexIndex v : tet(t)) complex.tet_at[v] = kNone;
+  // Where a tet goes without another in its place, the wall lies on its neighbour.
+  for (const NewWall& w : walls) {
+    if ((w.wall & kOuter) == 0) continue;
+    Rim& there = rim_.find_or_add(face_key(w.corners));
+    if (!there.open) {
+      there = {kOutside, w.wall, true};
+      continue;
+    }
+    there.open = false;
+    complex.across[there.across] = kOutside;
+    wall[there.across] = w.wall;
+    for (const VertexIndex v : w.corners) complex.tet_at[v] = there.across / 4;
+  }
+  for (const TetIndex t : old) {
+    complex.destroy(t);
+    score[t] = 0;
+  }
+  created_.clear();
+  for (const NewTet& n : fresh) {
+    const TetIndex t = slot();
+    complex.tets[t] = n.corners;
+    region[t] = n.region;
+    score[t] = n.score;
+    created_.push_back(t);
+  }
+  for (const TetIndex t : created_) {
+    for (const VertexIndex v : tet(t)) complex.tet_at[v] = t, touch(v);
+    tie(t);
+  }
+  for (const NewWall& w : walls) {
+    if ((w.wall & kOuter) != 0) continue;
+    const Triangle key = face_key(w.corners);
+    for (const TetIndex t : created_)
+      for (HalfFace h = 4 * t; h < 4 * t + 4; ++h)
+        if (face_key(complex.face(h)) == key) wall[h] = w.wall;
+  }
+}
+
+void Piece::move(VertexIndex v, const Vertex& to, std::span<const TetIndex> star, std::span<const float> scores) {
+  vertices[v] = to;
+  bool far = false;
+  for (std::size_t k = 0; k < star.size(); ++k) far |= std::abs(score[star[k]] - scores[k]) > kLittleChange;
+  for (std::size_t k = 0; k < star.size(); ++k) {
+    score[star[k]] = scores[k];
+    for (const VertexIndex u : tet(star[k])) far ? touch(u) : loosen(u);
+  }
+}
+
+std::vector<Parts::Line> Piece::lines() const {
+  std::vector<Parts::Line> all;
+  lines_.for_each([&](const Edge& edge, std::uint32_t path) { all.push_back({edge, path}); });
+  std::sort(all.begin(), all.end(), [](const Parts::Line& a, const Parts::Line& b) { return a.edge < b.edge; });
+  return all;
+}
+
+std::optional<std::string> Piece::first_inconsistency() const {
+  if (auto wrong = complex.first_inconsistency()) return wrong;
+  for (HalfFace h = 0; h < complex.across.size(); ++h) {
+    if (!complex.alive(h / 4)) continue;
+    const HalfFace o = complex.across[h];
+    const std::string name = "face " + std::to_string(h % 4) + " of tetrahedron " + std::to_string(h / 4);
+    if (o == kOutside && (wall[h] & kOuter) == 0) return name + " is outer, and no wall";
+    if (o == kNone) return name + " has nothing across";
+    if (!is_outside(o) && wall[o] != wall[h]) return name + " has another wall on its other side";
+  }
+  for (TetIndex t = 0; t < score.size(); ++t) {
+    if (!complex.alive(t)) continue;
+    if (!(score[t] > 0)) return "tetrahedron " + std::to_string(t) + " is not positive";
+    if (score[t] != score_of(tet(t))) return "tetrahedron " + std::to_string(t) + " has another score";
+  }
+  return std::nullopt;
+}
+
+}  // namespace octafront::adapt

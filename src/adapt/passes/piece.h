@@ -1,0 +1,181 @@
+#pragma once
+
+// A part of a mesh that one worker changes all by himself, with its vertices, walls and lines. Pieces are
+// taken from a mesh of parts by cells of space, changed, and put together again; what lies on their rims stays.
+
+#include <octafront/tet_mesh.h>
+
+#include "adapt/metric/metric.h"
+#include "base/core/flat_map.h"
+#include "base/mesh/tet_complex.h"
+
+#include <array>
+#include <cmath>
+#include <cstdint>
+#include <optional>
+#include <span>
+#include <string>
+#include <vector>
+
+namespace octafront::adapt {
+
+/// How free a vertex is.
+enum class Kind : std::uint8_t { kInner, kSurface, kCurve, kFixed };
+
+struct Vertex {
+  Vec3 at;
+  Metric metric;
+  double density = 1;        ///< density_of(metric)
+  std::uint32_t id = kNone;  ///< in the mesh that was given; kNone: new
+  std::uint32_t hint = 0;    ///< where the metric was looked up (MetricField::at)
+  Kind kind = Kind::kInner;
+  bool rim = false;     ///< of a piece: some of its tets are not there, so it stays
+  bool active = true;   ///< something may be left to connect, split or collapse around it
+  bool loose = true;    ///< it may have to move
+  bool touched = true;  ///< of a piece: it was active when that was taken, or something around it changed since
+  bool exact = true;    ///< the metric is that of the place, not one on the way to it
+  bool frozen = false;  ///< asked to stay as it is, with all that is between vertices that are
+  bool held = false;    ///< asked to stay as it is, alone
+  bool off = false;     ///< on a wall, beside the surface that was given: it is to go there
+  /// For what mends: kStirred, something around it changed; kSettling, just before the cycle that is under way; kCalm,
+  /// all that could be tried around it has been, in vain.
+  enum Calmness : std::uint8_t { kCalm, kSettling, kStirred } calmness = kStirred;
+};
+
+/// The label of a half-face that lies on a wall, else 0: one more than the number of the part, and kOuter where nothing
+/// lies across.
+using Wall = std::uint32_t;
+inline constexpr Wall kOuter = 0x80000000u;
+
+/// What lies across outer walls, and across the rim of a piece.
+inline constexpr HalfFace kOutside = kFirstOutside, kBeyondRim = kFirstOutside + 1;
+
+/// The corner whose metric an element is measured in.
+inline const Vertex& densest_of(const std::array<const Vertex*, 4>& corners) {
+  const Vertex* densest = corners[0];
+  for (int i = 1; i < 4; ++i)
+    if (corners[i]->density > densest->density) densest = corners[i];
+  return *densest;
+}
+
+/// The length of an edge; in metrics of size without the tensors.
+inline double length_between(const Vertex& p, const Vertex& q, bool isotropic) {
+  const Vec3 e = q.at - p.at;
+  if (!isotropic) return metric_length(e, p.metric, q.metric);
+  const double squared = dot(e, e);
+  return log_mean(std::sqrt(p.metric.xx * squared), std::sqrt(q.metric.xx * squared));
+}
+/// The score of a tet with these corners, 0 if it is not positive by exact sign.
+float score_of_corners(const std::array<const Vertex*, 4>& c, bool isotropic);
+
+/// A mesh whose every part carries a number: tets, half-faces on walls, edges on lines. Flat arrays.
+struct Parts {
+  std::vector<Vertex> vertices;
+  std::vector<Tet> tets;
+  std::vector<std::uint32_t> region;      ///< per tet: the number of its part
+  std::vector<std::array<Wall, 4>> wall;  ///< per tet and face
+  struct Line {
+    Edge edge;           ///< sorted
+    std::uint32_t path;  ///< the line that it belongs to, between two corners; kStays: it must not be divided
+  };
+  static constexpr std::uint32_t kStays = kNone;
+  std::vector<Line> lines;
+  bool isotropic = false;  ///< all metrics are those of sizes
+};
+
+/// The tets of a Parts that one worker may change, and those vertices, walls and lines that they have.
+class Piece {
+ public:
+  /// Takes these tets; `here` has kNone for each vertex of the mesh, and has it again afterwards.
+  Piece(const Parts& mesh, std::span<const TetIndex> tets, std::span<const Parts::Line> lines,
+        std::vector<VertexIndex>& here);
+
+  std::vector<Vertex> vertices;
+  TetComplex complex;
+  std::vector<std::uint32_t> region;  ///< per slot
+  std::vector<Wall> wall;             ///< per half-face
+  std::vector<float> score;           ///< per slot: metric_score()
+  bool isotropic = false;             ///< Parts::isotropic
+
+  const Tet& tet(TetIndex t) const { return complex.tets[t]; }
+  Vec3 point(VertexIndex v) const { return vertices[v].at; }
+  /// The path of the line that the edge lies on; nullptr: none.
+  const std::uint32_t* line(VertexIndex a, VertexIndex b) const {
+    if (vertices[a].kind < Kind::kCurve || vertices[b].kind < Kind::kCurve) return nullptr;
+    return lines_.find(sorted_edge(a, b));
+  }
+  void set_line(VertexIndex a, VertexIndex b, std::uint32_t path) { lines_.find_or_add(sorted_edge(a, b)) = path; }
+  void drop_line(VertexIndex a, VertexIndex b) { lines_.erase(sorted_edge(a, b)); }
+
+  double edge_length(VertexIndex a, VertexIndex b) const { return length_between(vertices[a], vertices[b]); }
+  double length_between(const Vertex& p, const Vertex& q) const { return adapt::length_between(p, q, isotropic); }
+  /// The score of a tet on these vertices, 0 if it is not positive by exact sign.
+  float score_of(const Tet& t) const { return score_with(t, kNone, Vertex{}); }
+  /// The same with another place and metric of vertex v.
+  float score_with(const Tet& t, VertexIndex v, const Vertex& as) const {
+    std::array<const Vertex*, 4> c;
+    for (int i = 0; i < 4; ++i) c[i] = t[i] == v ? &as : &vertices[t[i]];
+    return score_of_corners(c);
+  }
+  float score_of_corners(const std::array<const Vertex*, 4>& c) const { return adapt::score_of_corners(c, isotropic); }
+
+  /// The tets around v, of those in the piece. Valid until the next call.
+  const std::vector<TetIndex>& star(VertexIndex v) { return complex.star(v); }
+  /// The tets around the edge (a, b) of t, from one wall or rim to the other if there are any. False if tets beyond the
+  /// rim may be around it too, or one of a score below `least` is.
+  bool ring(TetIndex t, VertexIndex a, VertexIndex b, EdgeRing& out, float least = 0) const;
+  /// A tet of the piece that has both; kNone.
+  TetIndex tet_with(VertexIndex a, VertexIndex b, TetIndex guess);
+
+  struct NewTet {
+    Tet corners;
+    std::uint32_t region;
+    float score;
+  };
+  /// A face that is to lie on a wall: with kOuter facing outward.
+  struct NewWall {
+    Triangle corners;
+    Wall wall;
+  };
+  /// Puts new tets in the place of old ones; they are in created(). Outer walls of the old ones that none of the new
+  /// has are gone. Their vertices become active.
+  void replace(std::span<const TetIndex> old, std::span<const NewTet> fresh, std::span<const NewWall> walls);
+  const std::vector<TetIndex>& created() const { return created_; }
+
+  /// Moves a vertex whose star is given, with the scores there. Its neighbours become loose, and active if that is far.
+  void move(VertexIndex v, const Vertex& to, std::span<const TetIndex> star, std::span<const float> scores);
+
+  /// Something around the vertex changed.
+  void touch(VertexIndex v) {
+    loosen(v);
+    vertices[v].active = true;
+  }
+  /// Something moved a little around it.
+  void loosen(VertexIndex v) {
+    vertices[v].loose = vertices[v].touched = true;
+    vertices[v].calmness = Vertex::kStirred;
+  }
+
+  std::vector<Parts::Line> lines() const;
+
+  /// What is wrong with neighbours, walls or scores.
+  std::optional<std::string> first_inconsistency() const;
+
+ private:
+  struct Rim {
+    HalfFace across = kNone;
+    Wall wall = 0;
+    bool open = false;
+  };
+
+  void connect();
+  void toggle(const Triangle& corners, HalfFace across, Wall wall);
+  void tie(TetIndex t);
+  TetIndex slot();
+
+  FlatMap<Edge, std::uint32_t> lines_;
+  FlatMap<Triangle, Rim> rim_;
+  std::vector<TetIndex> created_;
+};
+
+}  // namespace octafront::adapt

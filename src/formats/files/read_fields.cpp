@@ -1,0 +1,98 @@
+// Fields of the file that a mesh was read from.
+
+#include <octafront/error.h>
+#include <octafront/field_files.h>
+
+#include "formats/containers/input.h"
+#include "formats/files/size_readers.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include <fmt/core.h>
+
+namespace octafront {
+namespace {
+
+/// A name that no field has: a reader that is asked for it lists all there are.
+const std::string kNoField("\0", 1);
+/// The quality that our writers put beside every mesh is not known of one that is made of it.
+constexpr std::string_view kOwn = "beta";
+
+io::RawMesh read_with(const io::Input& input, const std::string& field) {
+  io::Input asked = input;
+  asked.field = &field;
+  asked.wants_tensors = true;
+  return read_with_field(asked);
+}
+
+bool are_finite(const std::vector<double>& values) {
+  return std::all_of(values.begin(), values.end(), [](double v) { return std::isfinite(v); });
+}
+
+/// Takes what a file has under a name, at points, in tetrahedra or both.
+class FieldTaker {
+ public:
+  FieldTaker(const io::Input& input, const TetMesh& mesh, bool is_strict)
+      : input_(input), mesh_(mesh), is_strict_(is_strict) {}
+
+  void take(const std::string& name) {
+    io::RawMesh raw = read_with(input_, name);
+    require_same(raw);
+    const std::size_t before = out.fields.size();
+    const std::size_t n = raw.points.empty() ? 0 : raw.field.at_points.size() / raw.points.size();
+    const bool has_tets = !raw.field.at_tets.empty();
+    if (n == 0 && !has_tets) leave_out(name, "it has not one for each point, or each tetrahedron");
+    if (n > 0) add({name, false, n, std::move(raw.field.at_points)}, n * mesh_.points.size());
+    if (has_tets) add({name, true, 1, std::move(raw.field.at_tets)}, mesh_.tets.size());
+    if (is_strict_ && out.fields.size() == before)
+      input_.fail(fmt::format("the field {} cannot be carried: {}", io::in_quotes(name), why_));
+  }
+
+  FieldsOfFile out;
+
+ private:
+  void require_same(const io::RawMesh& raw) const {
+    if (raw.points == mesh_.points && raw.tets.size() == mesh_.tets.size()) return;
+    input_.fail(fmt::format(
+        "its {} points are not those of the mesh, {}: points of no element, or elements of second order, and "
+        "fields are of linear ones (octafront convert --order 1)",
+        raw.points.size(), mesh_.points.size()));
+  }
+
+  void add(MeshField field, std::size_t expected) {
+    if (field.values.size() != expected) return leave_out(field.name, "it has not one for each");
+    if (!are_finite(field.values)) return leave_out(field.name, "it has values that are not finite");
+    out.fields.push_back(std::move(field));
+  }
+  void leave_out(const std::string& name, const char* why) {
+    why_ = why;
+    out.notes.push_back(fmt::format("the field {} is left out: {}", io::in_quotes(name), why));
+  }
+
+  const io::Input& input_;
+  const TetMesh& mesh_;
+  bool is_strict_;
+  std::string why_;
+};
+
+}  // namespace
+
+FieldsOfFile read_fields(const std::string& file, const TetMesh& mesh, const std::vector<std::string>& names,
+                         const RunContext& context) {
+  const io::LoadedFile loaded(file, context);
+  const io::Input& input = loaded.input();
+  std::vector<std::string> there = read_with(input, kNoField).field.names;
+  std::erase(there, kOwn);
+  for (const std::string& name : names)
+    if (std::find(there.begin(), there.end(), name) == there.end()) {
+      std::string list;
+      for (const std::string& known : there) list += (list.empty() ? "; there are " : ", ") + io::in_quotes(known);
+      input.fail(fmt::format("has no field {}{}", io::in_quotes(name), list));
+    }
+  FieldTaker taker(input, mesh, !names.empty());
+  for (const std::string& name : names.empty() ? there : names) taker.take(name);
+  return std::move(taker.out);
+}
+
+}  // namespace octafront
