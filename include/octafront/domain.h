@@ -174,6 +174,7 @@ struct Domain {
   std::array<std::uint32_t, 3> voxels = {0, 0, 0};
 
   std::string unit = {};                   ///< that coordinates count, as far as that is known: of CAD
+  std::string frame = {};                  ///< of an image: where x, y and z point, Image::frame
   std::string format = {};                 ///< of the input: "binary STL", "several files", ...
   std::vector<double> volumes = {};        ///< of the regions of a complex, as they are; empty: a plain surface
   std::vector<IntakeNote> notes = {};      ///< in the order in which they were told
