@@ -3,7 +3,6 @@
 #include <octafront/image_surface.h>
 
 #include "base/core/doubles.h"
-#include "base/core/elementary.h"
 #include "base/core/wording.h"
 #include "doors/intake/cell.h"
 #include "doors/intake/coarser_voxels.h"
@@ -126,17 +125,6 @@ std::optional<Image> with_whole_labels(const Image& image) {
   return made;
 }
 
-/// The edge length that elements of the labels will have; 0: not known.
-double size_to_come(const Image& image, const ImageRegions& regions, const ImageIntake& asked) {
-  if (asked.size || !asked.elements) return asked.size.value_or(0);
-  const LabelImage labels = labels_of(image, regions.labels);
-  const auto voxels = static_cast<double>(
-      std::ranges::count_if(labels.regions, [](std::uint16_t region) { return region != LabelImage::kNoRegion; }));
-  const auto& [a, b, c] = image.grid.axes;
-  constexpr double kTetsPerCube = 9.24;  // of the edge length
-  return elementary::cbrt(kTetsPerCube * voxels * std::abs(dot(cross(a, b), c)) / static_cast<double>(*asked.elements));
-}
-
 double area_of_contacts(const Image& image, const ImageRegions& regions, const ImageIntake& asked) {
   if (asked.contacts == "keep") return 0;
   if (!asked.contacts.empty()) {
@@ -147,7 +135,7 @@ double area_of_contacts(const Image& image, const ImageRegions& regions, const I
     return area;
   }
   if (kind_of(image, regions) != ImageRegions::Kind::kLabels) return 0;
-  const double size = size_to_come(image, regions, asked);
+  const double size = asked.size.value_or(0);
   return size * size;
 }
 
