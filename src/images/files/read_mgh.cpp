@@ -16,7 +16,7 @@
 namespace octafront::image {
 namespace {
 
-constexpr std::size_t kHeader = 284;
+constexpr std::size_t kMghHeader = 284;
 constexpr std::size_t kPlaced = 28, kSpacing = 30, kDirections = 42, kMiddle = 78;  ///< where fields stand
 
 template <class T>
@@ -67,7 +67,7 @@ void place(std::string_view header, ImageGrid& grid, std::vector<std::string>& n
 }  // namespace
 
 bool is_mgh(std::string_view head) {
-  if (head.size() < kHeader || word(head, 0) != 1 || !type_of_mgh(word(head, 5))) return false;
+  if (head.size() < kMghHeader || word(head, 0) != 1 || !type_of_mgh(word(head, 5))) return false;
   const auto is_size = [&](std::size_t n) { return word(head, n) > 0 && word(head, n) <= 1 << 20; };
   const auto placed = big_endian_at<std::int16_t>(head, kPlaced);
   return is_size(1) && is_size(2) && is_size(3) && is_size(4) && (placed == 0 || placed == 1);
@@ -75,7 +75,7 @@ bool is_mgh(std::string_view head) {
 
 Image read_mgh(const Reading& reading) {
   ByteSource source(reading.input, 0, Packing::kDetect);
-  const std::string header(source.require(kHeader, "the header"));
+  const std::string header(source.require(kMghHeader, "the header"));
   Image image;
   image.format = source.is_packed() ? "FreeSurfer MGZ" : "FreeSurfer MGH";
   image.unit = "mm";
