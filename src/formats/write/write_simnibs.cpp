@@ -30,6 +30,11 @@ std::size_t rank_of_tissue(std::int32_t tag) {
                                 : kInside.size() + static_cast<std::size_t>(tag);
 }
 
+/// The label of the region of an element, or its number.
+std::int32_t tissue_of(const MeshParts& mesh, std::size_t tet) {
+  return static_cast<std::int32_t>(mesh.number_of(Part::Origin::kRegion, mesh.region_of(tet)));
+}
+
 Triangle key_of_face(Triangle t) {
   std::sort(t.begin(), t.end());
   return t;
@@ -47,7 +52,7 @@ TissueFaces tissue_faces(const MeshParts& mesh) {
   std::sort(wanted.begin(), wanted.end());
   TissueFaces faces{std::vector<Triangle>(wanted.size()), std::vector<std::int32_t>(wanted.size(), 0)};
   for (std::size_t t = 0; t < mesh.tets(); ++t) {
-    const auto tag = static_cast<std::int32_t>(mesh.tag_of_region(mesh.region_of(t)));
+    const std::int32_t tag = tissue_of(mesh, t);
     for (const auto& [a, b, c] : kTetFaces) {
       const Tet& tet = mesh.mesh().tets[t];
       const auto at = [&](int corner) { return tet[static_cast<std::size_t>(corner)]; };
@@ -83,8 +88,7 @@ class SimnibsWriter {
         2, faces.tag.size(), [&](std::size_t f) { return faces.tag[f]; },
         [&](std::size_t f) { return faces.corners[f]; });
     write_elements(
-        4, mesh_.tets(),
-        [&](std::size_t t) { return static_cast<std::int32_t>(mesh_.tag_of_region(mesh_.region_of(t))); },
+        4, mesh_.tets(), [&](std::size_t t) { return tissue_of(mesh_, t); },
         [&](std::size_t t) { return mesh_.mesh().tets[t]; });
     out_.close("Elements");
     const std::size_t before = faces.tag.size();
@@ -121,9 +125,9 @@ void write_simnibs(MeshOutput& out, const MeshParts& mesh) {
   if (mesh.points() > kMost || mesh.faces() + mesh.tets() > kMost)
     throw OutputError(out.target().string() + ": MSH 2.2 counts with 32 bits, too few for this mesh");
   for (const Part& part : mesh.parts(Part::Origin::kRegion))
-    if (part.tag >= kSurfaces)
-      throw OutputError(fmt::format("{}: the region {} has the label {}; SimNIBS has labels below {}",
-                                    out.target().string(), in_quotes(part.name), part.tag, kSurfaces));
+    if (const std::int64_t label = mesh.number_of(Part::Origin::kRegion, part.number); label < 1 || label >= kSurfaces)
+      throw OutputError(fmt::format("{}: the region {} has the label {}; SimNIBS has labels from 1 to below {}",
+                                    out.target().string(), in_quotes(part.name), label, kSurfaces));
   note_fields_left_out(out);
   SimnibsWriter(out.file(), mesh, out.fields(), out.as_text()).write();
 }
