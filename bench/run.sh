@@ -24,6 +24,8 @@
 #   bench/run.sh known_answers   2,000 clean models damaged in known ways, repaired and judged -> docs/measured/repair-known.md
 #   bench/run.sh damage      clean models damaged in 24 ways beside the undamaged ones -> docs/measured/damage.md
 #   bench/run.sh images      volumes of labels, each label judged; --peers: beside CGAL -> docs/measured/images-status.md
+#   bench/run.sh images_needed   label images at sizes coarser than voxels: elements made and needed, Dice; --beside PROGRAM: another
+#                            build of octafront    -> docs/measured/images-needed.md
 #   bench/run.sh thin        plates, discs, tubes, shells 1:10 to 1:1e6, beside Gmsh and TetGen -> docs/measured/thin-bodies.md
 #   bench/run.sh budget      automatic sizes: budget said, elements made, time, what was given up -> docs/measured/budget-status.md
 #   bench/run.sh cad         CAD files at parts of their diagonal: volumes, areas, names, nodes on the geometry, time; --peers: beside Gmsh
@@ -43,7 +45,7 @@ cd "$(dirname "$0")/.."
 source scripts/lib/apt.sh
 
 case ${1:-} in
-  status | derived | pipeline | surface | elements | gradation | volume | graded | peers | experiments | complexes | improve | adapt | adapt_loops | formats | parts | second_order | dry_run | repair | known_answers | damage | images | thin | budget | cad | layers | layers_shapes | layers_flows | layers_peers | layers_solved | inside | periodic | ranks | threads | answers) ;;
+  status | derived | pipeline | surface | elements | gradation | volume | graded | peers | experiments | complexes | improve | adapt | adapt_loops | formats | parts | second_order | dry_run | repair | known_answers | damage | images | images_needed | thin | budget | cad | layers | layers_shapes | layers_flows | layers_peers | layers_solved | inside | periodic | ranks | threads | answers) ;;
   *) sed -n '2,/^set/s/^# \{0,1\}//p' "$0"; exit 2 ;;
 esac
 need_packages "${build_packages[@]}" python3
@@ -67,8 +69,9 @@ need_packages "${build_packages[@]}" python3
 { [ "$1" != inside ] && [ "$1" != periodic ]; } || need_packages python3-numpy python3-meshio python3-gmsh tetgen
 [ "$1" != layers_peers ] || need_packages python3-gmsh
 [ "$1" != images ] || need_packages libcgal-dev libgmp-dev libmpfr-dev libboost-dev
-[ "$1" != images ] || [ -d volumes ] || bench/models/get-volumes.sh
-[ "$1" = formats ] || [ "$1" = ranks ] || [ "$1" = adapt ] || [ "$1" = complexes ] || [ "$1" = images ] || [ "$1" = thin ] || [ "$1" = cad ] || [ "$1" = answers ] || [ -d models/clean ] || bench/models/get-models.sh --ct
+[ "$1" != images_needed ] || need_packages python3-numpy python3-meshio python3-nibabel
+[[ $1 != images* ]] || [ -d volumes ] || bench/models/get-volumes.sh
+[ "$1" = formats ] || [ "$1" = ranks ] || [ "$1" = adapt ] || [ "$1" = complexes ] || [[ $1 = images* ]] || [ "$1" = thin ] || [ "$1" = cad ] || [ "$1" = answers ] || [ -d models/clean ] || bench/models/get-models.sh --ct
 tests=OFF
 [ "$1" != complexes ] && [ "$1" != known_answers ] || tests=ON  # what makes complexes is theirs, and a judge
 mpi=()
@@ -92,6 +95,6 @@ cmake --build --preset release --target octafront_cli octafront_evaluate octafro
 [ "$1" != images ] || cmake --build --preset release --target octafront_judge_image peer_cgal_labels
 [[ $1 != layers_* ]] || [ -d models/flows ] || bench/models/get-flows.sh build/release/cli/octafront
 python=python3
-[ "$1" != repair ] && [ "$1" != known_answers ] && [ "$1" != damage ] || python=/usr/bin/python3  # Debian's, with its NumPy
+[ "$1" != repair ] && [ "$1" != known_answers ] && [ "$1" != damage ] && [ "$1" != images_needed ] || python=/usr/bin/python3  # Debian's, with its NumPy
 [[ $1 != layers_* ]] && [ "$1" != inside ] && [ "$1" != periodic ] && [ "$1" != answers ] || python=/usr/bin/python3
 exec "$python" -m "bench.run.$1" build/release "${@:2}"

@@ -26,7 +26,7 @@ struct TypedLength {
 };
 
 /// What people choose who do not want to think: how fine automatic sizes are, and how long elements are improved.
-enum class Preset { kDraft, kStandard, kFine };
+enum class Preset { kDraft, kStandard, kFine, kHead };
 
 /// What the user typed, as the commands need it.
 struct Arguments {
@@ -52,8 +52,11 @@ struct Arguments {
   std::vector<TypedLength> lengths;  ///< that wait for it
   std::optional<Preset> preset;
   bool dry_run = false;
-  std::vector<GroupRule> groups;  ///< that are added to it
-  int new_order = 0;              ///< of a converted mesh; 0: as it is
+  std::vector<GroupRule> groups;                              ///< that are added to it
+  std::vector<std::pair<std::string, std::string>> samples;   ///< images and what their values are called on the mesh
+  std::vector<std::pair<std::string, std::string>> formulas;  ///< fields by name and formula, in turn
+  std::uint32_t material_bins = 0;                            ///< of the last field; 0: none
+  int new_order = 0;                                          ///< of a converted mesh; 0: as it is
   int threads = 0;
   ProcessLimits limits;
   bool quiet = false;

@@ -151,9 +151,11 @@ auto telling_what_was_made(Session& session, const Work& work) {
 template <class Generator>
 auto run_on_input(Session& session, const Generator& generator) {
   const Arguments& a = session.arguments();
-  const Options options = checked_options_of(session);
+  Options options = checked_options_of(session);
   Domain domain;
   together(session.context().ranks, "input", [&] { domain = open_input(session, intake_for(options, a.intake)); });
+  add_sizes_of_head(a, domain, options);
+  for (const GroupRule& rule : a.groups) check_group(domain.surface, rule);
   try {
     if (!a.page.empty()) find_repairs(session, domain.surface);
     return telling_what_was_made(session, [&] { return generator(domain, options, session.context()); });
@@ -298,7 +300,7 @@ std::vector<MeshField> fields_to_carry(Session& session, const TetMesh& mesh) {
   if (a.carry.size() == 1 && a.carry[0] == "none") return {};
   if (!some_target_holds_fields(a)) {
     if (is_default) return {};
-    throw OptionError("--carry: no output holds fields; write .vtu, .vtk or .msh");
+    throw OptionError("--carry: no output holds fields; write .vtu, .vtk, .msh or .xdmf");
   }
   // What was not asked for is no reason to fail.
   if (is_default && mesh.is_second_order()) return {};

@@ -88,6 +88,7 @@ Domain open_input(Session& session, const IntakeOptions& options) {
   try {
     Domain domain = open_domain(in_utf8(a.bodies), told, session.context());
     session.found(Json::parse(to_json(domain)));
+    session.frame = domain.frame;
     if (!a.defects.empty() && !domain.repairs.empty())
       write_surface(a.defects.string(), marks_of(domain.repairs), session.context());
     return domain;

@@ -42,6 +42,20 @@ std::vector<double> spacing_of(const std::string& typed) {
   return spacing;
 }
 
+Electrode electrode_of(const std::string& typed) {
+  const std::vector<std::string> words = CLI::detail::split(typed, ':');
+  std::vector<double> numbers;
+  if (words.size() == 3)
+    for (const std::string& word : CLI::detail::split(words[0], ','))
+      numbers.push_back(finite("--electrode", typed, word));
+  if (numbers.size() != 3) refuse("--electrode", typed, "is no disc; write X,Y,Z:RADIUS:HEIGHT, such as 0,90,30:12:4");
+  const Electrode made{{numbers[0], numbers[1], numbers[2]},
+                       finite("--electrode", typed, words[1]),
+                       finite("--electrode", typed, words[2])};
+  if (!(made.radius > 0 && made.height > 0)) refuse("--electrode", typed, "has a radius or height that is not above 0");
+  return made;
+}
+
 }  // namespace
 
 GreyBand grey_band(const std::string& typed) {
@@ -112,6 +126,11 @@ std::vector<LineOption> image_line_options() {
       {kCommands, kGroup, "--merge", "A,B=NAME", "These labels are one region",
        to_image([](ImageIntake& image, const std::string& typed) {
          image.regions.labels.merge.push_back(label_merge(typed));
+       })},
+      {kCommands, kGroup, "--electrode", "X,Y,Z:RADIUS:HEIGHT",
+       "A disc on the skin at this point, a region of its own; may be repeated",
+       to_image([](ImageIntake& image, const std::string& typed) {
+         image.regions.electrodes.push_back(electrode_of(typed));
        })},
       {kCommands, kGroup, "--crop", "I0:I1,J0:J1,K0:K1",
        "Only these voxels along i, j and k, counted from 0, the last ones too; an end that is missing stays",

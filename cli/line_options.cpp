@@ -112,13 +112,38 @@ Vec3 point_of(const std::string& option, const std::string& typed, const std::st
   return *point;
 }
 
+/// NAME=thickness:LO..HI or NAME=.6*thickness:LO..HI.
+NamedSize size_by_thickness(const std::string& name, const std::string& before, const std::string& range) {
+  NamedSize named{name, 0, 1, 0};
+  const std::size_t dots = range.find("..");
+  const auto is_number = [](const std::string& word, double& value) { return CLI::detail::lexical_cast(word, value); };
+  const bool has_factor =
+      before.empty() || (before.ends_with('*') && is_number(before.substr(0, before.size() - 1), named.of_thickness));
+  if (!has_factor || dots == std::string::npos || !is_number(range.substr(0, dots), named.size) ||
+      !is_number(range.substr(dots + 2), named.most))
+    throw CLI::ValidationError("--size-of",
+                               "\"" + name + "=" + before + "thickness:" + range +
+                                   "\" is no size by thickness; write NAME=thickness:1..5 or NAME=.6*thickness:1..10");
+  return named;
+}
+
 /// PLACE=H, where the place may have signs of equality of its own.
 NamedSize named_size(const std::string& text) {
   const std::size_t at = text.rfind('=');
+  if (const std::size_t by = text.find("thickness:", at + 1); at != std::string::npos && at > 0 && by != text.npos)
+    return size_by_thickness(text.substr(0, at), text.substr(at + 1, by - at - 1), text.substr(by + 10));
   double size = 0;
   if (at == std::string::npos || at == 0 || !CLI::detail::lexical_cast(text.substr(at + 1), size))
     throw CLI::ValidationError("--size-of", "\"" + text + "\" is not NAME=H, the name of a part and a size");
   return {text.substr(0, at), size};
+}
+
+/// A=B, divided at the last or the first sign; `how`: it is written. Throws OptionError.
+std::pair<std::string, std::string> named_value(const std::string& typed, const char* how, bool at_last) {
+  const std::size_t equals = at_last ? typed.rfind('=') : typed.find('=');
+  if (equals == 0 || equals == std::string::npos || equals + 1 == typed.size())
+    throw OptionError(fmt::format("\"{}\" has no value or no name; {}", typed, how));
+  return {CLI::detail::trim_copy(typed.substr(0, equals)), CLI::detail::trim_copy(typed.substr(equals + 1))};
 }
 
 /// PLACE=H:DISTANCE or X,Y,Z=H:DISTANCE.
@@ -180,6 +205,32 @@ std::vector<LineOption> output_options() {
        "Add a set of what lies at a place: NAME=box:X0,Y0,Z0,X1,Y1,Z1 or NAME=sphere:X,Y,Z,R of nodes, "
        "NAME=elements:box:... and NAME=faces:box:... of others, NAME=patches:A,B, or NAME=NAME of what has a name",
        each([](Arguments& a, const std::string& typed) { a.groups.push_back(group_rule(typed)); })},
+      {kWriters, kGroup, "--sample", "IMAGE=NAME",
+       "Values of an image as the field NAME of elements (the mean of their voxels) and nodes (linear between voxels), "
+       "in VTU, VTK, MSH and XDMF: --sample ct.nii.gz=HU",
+       each([](Arguments& a, const std::string& typed) {
+         a.samples.push_back(named_value(typed, "write IMAGE=NAME, such as ct.nii.gz=HU", true));
+       })},
+      {kWriters, kGroup, "--field", "NAME=FORMULA",
+       "A field by a formula of others and of x, y, z: --field \"E=10500*max(.01,.0011*HU)^2.29\"; in turn",
+       each([](Arguments& a, const std::string& typed) {
+         a.formulas.push_back(named_value(typed, "write NAME=FORMULA, such as \"rho=.0011*HU+.05\"", false));
+       })},
+      {kWriters, kGroup, "--material-bins", "N",
+       "Sets of elements by the last of these fields, for N equal parts of its range; their mean values are told, and "
+       "Abaqus files get a material and a section for each where the field is called E",
+       [](CLI::App& app, const LineOption& o, Arguments& a) {
+         constexpr std::uint32_t kMost = 10'000;
+         return app.add_option(std::string(o.names), a.material_bins, o.help)
+             ->type_name("N")
+             ->check(CLI::Range(std::uint32_t{1}, kMost));
+       }},
+      {kWriters, kGroup, "--poisson", "NU", "Poisson's ratio of these materials [.3]",
+       [](CLI::App& app, const LineOption& o, Arguments& a) {
+         return app.add_option(std::string(o.names), a.writing.poissons_ratio, o.help)
+             ->type_name("NU")
+             ->check(CLI::Range(-1.0, 0.5));
+       }},
       {"mesh improve adapt", kGroup, "--report", "FILE.html",
        "Write a web page with the mesh in 3D and all numbers, in one file that needs no network",
        value([](Arguments & a) -> auto& { return a.page; }), "A web page with the mesh in 3D and all numbers"},
@@ -197,13 +248,18 @@ std::vector<LineOption> size_options() {
   return {
       {"mesh", kGroup, "--preset", "",
        "draft: automatic sizes with about a quarter of the elements, improved fast; fine: with eight times as many, "
-       "improved best; options that are given go before [standard]",
-       choice_of<Preset>({{"draft", Preset::kDraft}, {"standard", Preset::kStandard}, {"fine", Preset::kFine}},
+       "improved best; head: sizes of a head's labels by their thickness, in mm; options that are given go before "
+       "[standard]",
+       choice_of<Preset>({{"draft", Preset::kDraft},
+                          {"standard", Preset::kStandard},
+                          {"fine", Preset::kFine},
+                          {"head", Preset::kHead}},
                          [](Arguments& a, Preset preset) { a.preset = preset; }),
        "How fine automatic sizes are, and how long the mesh is improved"},
       {kSizers, kGroup, "--size-of", "PLACE=H",
        "Edge length at a place: in and around a region, on a patch, along a curve, in box:... or sphere:...; of CAD "
-       "also \"color #ff8000\" or \"layer NAME\"; may be repeated",
+       "also \"color #ff8000\" or \"layer NAME\"; NAME=[F*]thickness:LO..HI: of a region F times its thickness, "
+       "within a range; may be repeated",
        each([](Arguments& a, const std::string& typed) { a.options.size.named.push_back(named_size(typed)); }),
        "Edge length in a region, on a patch or along a curve"},
       {kSizers, kGroup, "--size-near", "PLACE|X,Y,Z=H:DISTANCE",
@@ -274,7 +330,7 @@ std::vector<LineOption> adapt_options() {
        value([](Arguments & a) -> auto& { return a.norm; })},
       {"adapt", kGroup, "--carry", "FIELD",
        "Fields of the input that go along, by name and with commas between, or none: linear at points, conservative in "
-       "elements; into VTU, VTK and MSH [all]",
+       "elements; into VTU, VTK, MSH and XDMF [all]",
        [](CLI::App& app, const LineOption& o, Arguments& a) {
          return app.add_option(std::string(o.names), a.carry, o.help)->delimiter(',')->type_name(std::string(o.letter));
        }},

@@ -168,6 +168,12 @@ constexpr ReportField kReport[] = {
     {"carried[].name", "string", "of a field that went along"},
     {"carried[].of", "string", "points or elements"},
     {"carried[].components", "integer", ""},
+    {"material_bins[].set", "string", "of elements of about one value, by --material-bins"},
+    {"material_bins[].mean", "number", "of the field, by volume"},
+    {"material_bins[].least", "number", ""},
+    {"material_bins[].most", "number", ""},
+    {"material_bins[].elements", "integer", ""},
+    {"material_bins[].volume", "number", ""},
     // The run.
     {"output", "object", "the first file that was written, its format and notes"},
     {"outputs[]", "object", "all, where there are several"},

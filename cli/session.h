@@ -31,6 +31,9 @@ class Session {
 
   /// To stdout, with fields of Options as the command line names them; nothing if the user wants none, or JSON there.
   void say(const std::string& text) const;
+  /// Where x, y and z of the mesh point, as Image::frame has it; empty: not known.
+  std::string frame;
+
   /// What was asked for itself, such as a manual: byte by byte.
   void say_exactly(const std::string& text) const;
   void say_notes(const std::string& stage, const std::vector<std::string>& notes) const;

@@ -6,6 +6,7 @@
 #include <octafront/named_groups.h>
 #include <octafront/share_files.h>
 
+#include "fields.h"
 #include "ranks.h"
 #include "terminal.h"
 
@@ -141,6 +142,7 @@ void check_mesh_targets(const Arguments& a) {
   if (!a.formats.empty() && a.formats.size() != a.meshes.size())
     throw OptionError(fmt::format("--format is given {} and -o {} times: give each output its format, in turn",
                                   a.formats.size(), a.meshes.size()));
+  check_asked_fields(a);
   for (std::size_t i = 0; i < a.meshes.size(); ++i) {
     const WriteOptions options = options_of(a, i);
     if (a.meshes[i] == kStandardOutput)
@@ -172,15 +174,21 @@ void check_surface_targets(const Arguments& a) {
 void write_mesh_targets(Session& session, const TetMesh& as_it_is, std::span<const MeshField> fields) {
   const Arguments& a = session.arguments();
   std::optional<TetMesh> grouped;
-  if (!a.groups.empty()) grouped = as_it_is;
+  if (!a.groups.empty() || a.material_bins > 0) grouped = as_it_is;
   const TetMesh& mesh = grouped ? *grouped : as_it_is;
   std::vector<std::string> group_notes;
   for (const GroupRule& rule : a.groups)
     if (std::string note = add_group(*grouped, rule); !note.empty()) group_notes.push_back(std::move(note));
+  std::vector<MeshField> all_fields(fields.begin(), fields.end());
+  add_asked_fields(session, mesh, all_fields);
+  const std::vector<SetMaterial> materials =
+      a.material_bins > 0 ? bins_asked(session, *grouped, all_fields) : std::vector<SetMaterial>{};
   Json all = Json::array();
   for (std::size_t i = 0; i < a.meshes.size(); ++i) {
     session.context().report("writing", -1);
-    std::vector<std::string> notes = write_one(a.meshes[i], mesh, fields, options_of(a, i), session.context());
+    WriteOptions options = options_of(a, i);
+    options.materials = materials;
+    std::vector<std::string> notes = write_one(a.meshes[i], mesh, all_fields, options, session.context());
     session.warn("writing", group_notes);
     session.say_notes("writing", notes);
     notes.insert(notes.begin(), group_notes.begin(), group_notes.end());
@@ -211,7 +219,8 @@ bool takes_shares(const Arguments& a) {
   const auto is_pvtu = [&](std::size_t i) { return format_for(a.meshes[i].string(), options_of(a, i)).name == "pvtu"; };
   for (std::size_t i = 0; i < a.meshes.size(); ++i)
     if (!is_pvtu(i)) return false;
-  return a.writing.parts == 0 && a.page.empty() && a.groups.empty() && !a.writing.ascii && !a.writing.cells_only;
+  return a.writing.parts == 0 && a.page.empty() && a.groups.empty() && !asks_for_fields(a) && !a.writing.ascii &&
+         !a.writing.cells_only;
 }
 
 void write_share_targets(Session& session, const TetMesh& share) {

@@ -52,7 +52,7 @@ if [ "${1:-}" = --tests ]; then
   need_packages librapidcheck-dev
   build_static "$work" googletest "$toolchain"
   # shellcheck disable=SC2086
-  cmake -S . -B "$work/tests" -G Ninja -DCMAKE_BUILD_TYPE=Release -DOCTAFRONT_UNITY=ON -DOCTAFRONT_HDF5=OFF -DOCTAFRONT_BUILD_PYTHON=OFF \
+  cmake -S . -B "$work/tests" -G Ninja -DCMAKE_BUILD_TYPE=Release -DOCTAFRONT_UNITY=ON -DOCTAFRONT_HDF5=OFF -DOCTAFRONT_GDCM=OFF -DOCTAFRONT_TIFF=OFF -DOCTAFRONT_BUILD_PYTHON=OFF \
     -Drapidcheck_DIR="$(dirname "$(find /usr/lib -name rapidcheckConfig.cmake)")" $arguments >/dev/null
   for wing in sizing formats images soup; do
     cmake --build "$work/tests" --target "test_$wing" >/dev/null

@@ -14,7 +14,7 @@ build_tbb_and_fmt "$work" "${compiler[@]}"
 build_static "$work" googletest "${compiler[@]}"
 [ -z "${CMAKE_CXX_COMPILER_LAUNCHER:-}" ] || compiler+=("-DCMAKE_CXX_COMPILER_LAUNCHER=$CMAKE_CXX_COMPILER_LAUNCHER")
 cmake -S . -B "$work/all" -G Ninja -DCMAKE_BUILD_TYPE=Release -DCMAKE_PREFIX_PATH="$work/inside" -DOCTAFRONT_UNITY=ON -DOCTAFRONT_PCH=OFF \
-  -DOCTAFRONT_HDF5=OFF -DOCTAFRONT_CAD=OFF -DOCTAFRONT_BUILD_PYTHON=OFF "${compiler[@]}" >/dev/null
+  -DOCTAFRONT_HDF5=OFF -DOCTAFRONT_GDCM=OFF -DOCTAFRONT_TIFF=OFF -DOCTAFRONT_CAD=OFF -DOCTAFRONT_BUILD_PYTHON=OFF "${compiler[@]}" >/dev/null
 cmake --build "$work/all" --target octafront_cli
 failed=0
 for wing in "${wings[@]}"; do

@@ -25,7 +25,7 @@ mkdir -p "$work/inside/include"
 ln -sfn /usr/include/nlohmann "$work/inside/include/nlohmann"
 cmake -S . -B "$work/all" -G Ninja -DCMAKE_BUILD_TYPE=Release "$toolchain" "-DCMAKE_CXX_FLAGS=$exceptions" -DCMAKE_FIND_ROOT_PATH="$work/inside" \
   -DCMAKE_CXX_FLAGS_RELEASE="-O3 -DNDEBUG" -DZLIB_INCLUDE_DIR="$work/inside/include" -DZLIB_LIBRARY="$work/inside/lib/libz.a" \
-  -DOCTAFRONT_THREADS=OFF -DOCTAFRONT_HDF5=OFF -DOCTAFRONT_PCH=OFF -DOCTAFRONT_UNITY=ON -DOCTAFRONT_BUILD_CLI=OFF \
+  -DOCTAFRONT_THREADS=OFF -DOCTAFRONT_HDF5=OFF -DOCTAFRONT_GDCM=OFF -DOCTAFRONT_TIFF=OFF -DOCTAFRONT_PCH=OFF -DOCTAFRONT_UNITY=ON -DOCTAFRONT_BUILD_CLI=OFF \
   -DOCTAFRONT_BUILD_TESTS=OFF -DOCTAFRONT_BUILD_PYTHON=OFF -DOCTAFRONT_BUILD_EXAMPLES=OFF -DOCTAFRONT_INSTALL=OFF >/dev/null
 cmake --build "$work/all" --target octafront_web
 python3 web/assemble.py "$work/all/web" "$work"

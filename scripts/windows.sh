@@ -18,7 +18,7 @@ for name in nlohmann_json CLI11; do ln -sfn "/usr/share/cmake/$name" "$work/insi
 launcher=()
 [ -z "${CMAKE_CXX_COMPILER_LAUNCHER:-}" ] || launcher=("-DCMAKE_CXX_COMPILER_LAUNCHER=$CMAKE_CXX_COMPILER_LAUNCHER")
 cmake -S . -B "$work/all" -G Ninja -DCMAKE_BUILD_TYPE=Release "$toolchain" "-DCMAKE_FIND_ROOT_PATH=$work/inside" \
-  -DZLIB_LIBRARY=/usr/x86_64-w64-mingw32/lib/libz.a -DOCTAFRONT_HDF5=OFF -DOCTAFRONT_CAD=OFF -DOCTAFRONT_PCH=OFF \
+  -DZLIB_LIBRARY=/usr/x86_64-w64-mingw32/lib/libz.a -DOCTAFRONT_HDF5=OFF -DOCTAFRONT_GDCM=OFF -DOCTAFRONT_TIFF=OFF -DOCTAFRONT_CAD=OFF -DOCTAFRONT_PCH=OFF \
   -DOCTAFRONT_UNITY=ON -DOCTAFRONT_BUILD_PYTHON=OFF -DOCTAFRONT_BUILD_TESTS=OFF -DOCTAFRONT_BUILD_EXAMPLES=OFF -DOCTAFRONT_INSTALL=OFF \
   "${launcher[@]}" >/dev/null
 cmake --build "$work/all" --target octafront_cli

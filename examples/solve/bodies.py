@@ -1,5 +1,6 @@
 """The bodies of the solved examples, as OBJ files whose groups become the sets that loads and supports are put on."""
 import math
+import struct
 
 
 class Body:
@@ -53,6 +54,22 @@ def box(lo, hi, names, divisions=(1, 1, 1)):
     body.grid(names[4], lambda u, v: (v, u, z), ys, xs)
     body.grid(names[5], lambda u, v: (u, v, c), xs, ys)
     return body
+
+
+def voxels(path, size, value):
+    """An image of NIfTI-1, millimetre voxels, with the whole number value(i, j, k)."""
+    header = bytearray(352)
+    struct.pack_into("<i", header, 0, 348)
+    struct.pack_into("<8h", header, 40, 3, *size, 1, 1, 1, 1)
+    struct.pack_into("<hh", header, 70, 4, 16)
+    struct.pack_into("<8f", header, 76, 1, 1, 1, 1, 1, 1, 1, 1)
+    struct.pack_into("<f", header, 108, 352)
+    struct.pack_into("<h", header, 254, 1)
+    for row in range(3):
+        struct.pack_into("<f", header, 280 + 20 * row, 1)
+    header[344:348] = b"n+1\0"
+    places = [(i, j, k) for k in range(size[2]) for j in range(size[1]) for i in range(size[0])]
+    path.write_bytes(bytes(header) + struct.pack(f"<{len(places)}h", *(value(*p) for p in places)))
 
 
 def quarter_pipe(inner, outer, height, n):

@@ -264,7 +264,37 @@ def sphere(case):
                   sum(at_joint) / len(at_joint), expected, 0.01, worst)
 
 
-CASES = {f.__name__: f for f in (cantilever, pipe, patch, heat, plate, bar, sphere)}
+def pressed(case):
+    pressure, young, poisson = 100.0, 210000.0, 0.3
+    corners = {"origin": "0,0,0", "along_x": "10,0,0", "along_y": "0,10,0"}
+    groups = [f for name, p in corners.items() for f in ("--group", f"{name}=sphere:{p},.01")]
+    mesh = case.mesh_together({"cube": bodies.box((0, 0, 0), (10, 10, 10), ["cube"] * 6)}, "--size", "4",
+                              "--region", "cube=5,5,5", *groups)
+    case.solve()
+    moved, shrink = case.fields()["DISP"], pressure * (1 - 2 * poisson) / young
+    worst = max(abs(u + shrink * x) for n, p in mesh.nodes.items() for u, x in zip(moved[n], p)) / (10 * shrink)
+    found = -sum(moved[mesh.node_sets["along_x"][0]])
+    return result(case, mesh, "shortening under pressure, mm, and the worst node's error over it", found, 10 * shrink, 1e-5, worst)
+
+
+def scan(case):
+    """A block of bone whose stiffness rises with its grey value, 10 E = HU, from k = 0 to the other end."""
+    size, pressure = (8, 8, 40), 10.0
+    grey, labels = case.file("-ct.nii"), case.file("-labels.nii")
+    bodies.voxels(grey, size, lambda i, j, k: 400 + 20 * k)
+    bodies.voxels(labels, size, lambda i, j, k: 1)
+    mesh = case._run([labels], case.file("-mesh.inp"), [
+        "--image", "labels", "--size", "2", "--sample", f"{grey}=HU", "--field", "E=10*HU", "--material-bins", "40",
+        "--poisson", "0", "--group", "FIXED=patches:box_k0"])
+    case.solve()
+    # Linear between the middles of voxels, and constant over half a voxel at both ends.
+    expected = pressure / 10 * (0.5 / 400 + math.log(1180 / 400) / 20 + 0.5 / 1180)
+    moved = case.fields()["DISP"]
+    end = [-moved[n][2] for n in mesh.node_sets["box_k1"]]
+    return result(case, mesh, "shortening of a scanned block, mm", sum(end) / len(end), expected, 0.005)
+
+
+CASES = {f.__name__: f for f in (cantilever, pipe, patch, heat, plate, bar, sphere, pressed, scan)}
 
 
 def main():

@@ -49,10 +49,9 @@ struct ImageIntake {
   /// surfaces alone make so many elements: then no other triangles follow them.
   double most_elements = HUGE_VAL;
   /// Small contacts of labels are cleared (CleanOptions::contacts): those below an area, or "keep". Empty: below the
-  /// square of the edge length that elements will have, by `size` or else `elements`; kept if neither is known.
+  /// square of `size`, if that is given.
   std::string contacts = {};
-  std::optional<double> size = {};            ///< that edge length, in the unit of the file, > 0
-  std::optional<std::int64_t> elements = {};  ///< the number of tetrahedra that the mesh will have, > 0
+  std::optional<double> size = {};  ///< the edge length that elements will have, in the unit of the file, > 0
 };
 
 /// How a CAD file becomes a domain.
@@ -174,6 +173,7 @@ struct Domain {
   std::array<std::uint32_t, 3> voxels = {0, 0, 0};
 
   std::string unit = {};                   ///< that coordinates count, as far as that is known: of CAD
+  std::string frame = {};                  ///< of an image: where x, y and z point, Image::frame
   std::string format = {};                 ///< of the input: "binary STL", "several files", ...
   std::vector<double> volumes = {};        ///< of the regions of a complex, as they are; empty: a plain surface
   std::vector<IntakeNote> notes = {};      ///< in the order in which they were told

@@ -22,9 +22,9 @@ struct FieldsOfFile {
 FieldsOfFile read_fields(const std::string& file, const TetMesh& mesh, const std::vector<std::string>& names = {},
                          const RunContext& context = {});
 
-/// write_mesh(), with fields on the mesh, which is linear and has no wedges and pyramids. A note says what a format
-/// cannot hold (FormatHolds::fields). Faces have the value of the element that they look out of, edges 0. Throws
-/// OutputError for a field of another length.
+/// write_mesh(), with fields on the mesh. A note says what a format cannot hold (FormatHolds::fields). Wedges and
+/// pyramids have the value of their first tetrahedron; of second order, or in parts, they lose fields. Faces have the
+/// value of the element that they look out of, edges 0. Throws OutputError for a field of another length.
 std::vector<std::string> write_mesh(const std::string& file, const TetMesh& mesh, std::span<const MeshField> fields,
                                     const RunContext& context = {}, const WriteOptions& options = {});
 

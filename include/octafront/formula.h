@@ -1,12 +1,15 @@
 #pragma once
 
 #include <octafront/domain.h>
+#include <octafront/mesh_field.h>
 #include <octafront/no_context.h>
+#include <octafront/tet_mesh.h>
 #include <octafront/vec.h>
 
 #include <array>
 #include <cstdint>
 #include <memory>
+#include <span>
 #include <string>
 #include <vector>
 
@@ -27,10 +30,14 @@ class Formula {
  public:
   /// Throws OptionError with the place in the text that is not understood. Requires period > 0.
   explicit Formula(const std::string& text, double period = 1);
+  /// With further variables, by their names, which come behind those above.
+  Formula(const std::string& text, double period, const std::vector<std::string>& variables);
   ~Formula();
   Formula(Formula&&) noexcept;
 
-  double at(Vec3 p) const;
+  double at(Vec3 p) const { return at(p, {}); }
+  /// `values`: of the variables, in their order.
+  double at(Vec3 p, std::span<const double> values) const;
   /// Whether it knows a surface that repeats itself.
   bool is_periodic() const;
 
@@ -38,6 +45,13 @@ class Formula {
   struct Program;
   std::unique_ptr<const Program> program_;
 };
+
+/// The field `name` of points or elements by a formula of their coordinates (of elements their middles) and of `fields`
+/// of the same, one number each, by their names. Throws OptionError as Formula, and where a value is no number.
+///
+/// Example: with a field "HU", field_by_formula(mesh, "E", "10500 * max(.01, 1.1e-3 * HU)^2.29", fields, true).
+MeshField field_by_formula(const TetMesh& mesh, const std::string& name, const std::string& formula,
+                           std::span<const MeshField> fields, bool of_elements);
 
 /// Whether an input is meant as a formula: no such file is there, and the text has a coordinate or a named surface, and
 /// something else that names of files do not have or nothing else at all.

@@ -65,10 +65,10 @@ void check_options(const Options& options);
 ///
 /// A size that was given rules where it is coarser than voxels: surfaces may stray by a third of what it exceeds them
 /// by, which takes no elements smaller than half of it (SurfaceOptions::finest) but in regions that are smaller, and
-/// layers thinner than the size are filled by flat elements. With automatic sizes surfaces follow the net so closely (.16 voxels) that they are no
-/// farther than a voxel from the voxels' faces, as far as the budget of automatic sizes allows. A number of elements
-/// decides by itself. Whatever the sizes, regions keep their volumes. Of features only the edges of the image's box are
-/// kept (feature_angle 85), unless an angle is given.
+/// layers thinner than the size are filled by flat elements. With automatic sizes surfaces follow the net so closely
+/// (.16 voxels) that they are no farther than a voxel from the voxels' faces, as far as the budget of automatic sizes
+/// allows. A number of elements decides by itself. Whatever the sizes, regions keep their volumes. Of features only the
+/// edges of the image's box are kept (feature_angle 85), unless an angle is given.
 Options options_for_voxels(Options options, double spacing);
 
 /// What options_for_voxels() gives up for a size that is coarser than voxels, as a sentence; empty: nothing.

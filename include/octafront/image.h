@@ -27,6 +27,12 @@ struct ImageGrid {
   std::size_t voxels() const { return std::size_t{size[0]} * size[1] * size[2]; }
   double slice(std::uint32_t k) const { return slices.empty() ? k : slices[k]; }
   Vec3 to_world(Vec3 index) const { return origin + axes[0] * index.x + axes[1] * index.y + axes[2] * index.z; }
+  /// The way back: (i, j, slice(k)) and what is between.
+  Vec3 to_index(Vec3 world) const {
+    const auto& [a, b, c] = axes;
+    const Vec3 d = (world - origin) * (1 / dot(a, cross(b, c)));
+    return {dot(cross(b, c), d), dot(cross(c, a), d), dot(cross(a, b), d)};
+  }
   friend bool operator==(const ImageGrid&, const ImageGrid&) = default;
 };
 
@@ -159,13 +165,24 @@ struct CleanOptions {
   bool any() const { return islands > 0 || holes > 0 || closing > 0 || contacts > 0; }
 };
 
-/// Closes, removes islands, fills holes, clears small contacts, in this order; voxels that share a face hang together. Closing takes voxels of
-/// the outside only: those that are in reach of a region from all sides (the morphological closing with an octahedron
-/// of `closing` voxels), the first region's where several are. Islands and holes go to the region, or the outside, that
-/// has most faces with them. The largest piece of each region stays whatever its size: no region is lost. A contact is cleared by
-/// the layer of voxels on one of its sides, if that shortens the lines where three regions meet, cuts no region in two
-/// there and takes at most a twentieth of one. What was done
-/// is in the notes of the result. The same bits on any number of threads.
+/// Closes, removes islands, fills holes, clears small contacts, in this order; voxels that share a face hang together.
+/// Closing takes voxels of the outside only: those that are in reach of a region from all sides (the morphological
+/// closing with an octahedron of `closing` voxels), the first region's where several are. Islands and holes go to the
+/// region, or the outside, that has most faces with them. The largest piece of each region stays whatever its size: no
+/// region is lost. A contact is cleared by the layer of voxels on one of its sides, if that shortens the lines where
+/// three regions meet, cuts no region in two there and takes at most a twentieth of one. What was done is in the notes
+/// of the result. The same bits on any number of threads.
 LabelImage cleaned(const LabelImage& image, const CleanOptions& options, const RunContext& context = no_context());
+
+/// A disc on the skin.
+struct Electrode {
+  Vec3 at;                        ///< on the body or near it
+  double radius = 0, height = 0;  ///< > 0, in the unit of the file
+};
+
+/// Adds a region for each electrode, "electrode" or "electrode 2", whose label is above 100 and all others: voxels
+/// outside of all regions that lie no farther from them than it is high, within its radius around the line that leads
+/// outward where the body is nearest. Throws OptionError for one that has no voxel.
+LabelImage with_electrodes(LabelImage image, const std::vector<Electrode>& electrodes);
 
 }  // namespace octafront

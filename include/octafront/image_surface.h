@@ -75,7 +75,8 @@ struct ImageRegions {
   LabelOptions labels;
   std::vector<GreyBand> bands;  ///< one without a name is "body", several "band 1" and so on
   CleanOptions clean;
-  bool closed_at_box = true;  ///< off: regions that reach the edge of the image are refused
+  std::vector<Electrode> electrodes = {};  ///< of labels: set on when they are clean
+  bool closed_at_box = true;               ///< off: regions that reach the edge of the image are refused
   PeriodicMargin margin = {0, 0, 0};
 };
 

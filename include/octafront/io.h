@@ -70,6 +70,13 @@ enum class Partitioner {
 };
 
 /// How a mesh is written.
+/// What a set of elements is made of.
+struct SetMaterial {
+  std::string set;
+  std::string quantity;  ///< "E": Young's modulus
+  double value = 0;
+};
+
 struct WriteOptions {
   std::string format = {};  ///< its name in known_formats() ("abaqus", "msh22"); empty: the ending of the file tells
   bool ascii = false;       ///< as text; formats that are always text are so anyway
@@ -77,6 +84,9 @@ struct WriteOptions {
                             ///< edges, which some programs refuse beside tetrahedra
   bool cohesive = false;    ///< elements of no height (COH3D6) between the two sides of faces that were split: Abaqus
   std::string beams = {};   ///< names of curves, separated by commas, that are beams, too (B31, B32): Abaqus
+  std::vector<SetMaterial> materials = {};  ///< of sets of the mesh. Abaqus: of "E" *ELASTIC and *SOLID SECTION, else a
+                                            ///< comment
+  double poissons_ratio = 0.3;              ///< of these materials
   std::uint32_t parts = 0;  ///< so many parts, as programs on several processes want them: formats that hold them; each
                             ///< with one layer of elements around it where the format has that. 0: the mesh as one
   Partitioner partitioner = Partitioner::kCurve;

@@ -1,9 +1,11 @@
 #pragma once
 
+#include <octafront/mesh_field.h>
 #include <octafront/tet_mesh.h>
 #include <octafront/vec.h>
 
 #include <array>
+#include <cstdint>
 #include <span>
 #include <string>
 #include <string_view>
@@ -76,10 +78,27 @@ struct GroupRule {
 /// OptionError.
 GroupRule group_rule(const std::string& text);
 
+/// Refuses a rule by patches that a mesh of this surface or complex will not have, before it is made: names that
+/// neither a division by angle nor split_patches() would make. Throws OptionError, which lists those that there are.
+void check_group(const SurfaceMesh& surface, const GroupRule& rule);
+
 /// Adds the set to the mesh: nodes in the box or ball; faces of boundary and interfaces, curve edges or elements whose
 /// corners all are; the faces of the patches; or what is called so, a set for each kind. Returns a sentence for the
-/// user where there is something to say: no such patch, nothing found (then no set is added); else an empty string.
+/// user where there is something to say: nothing is called so, or nothing found (then no set is added); else an empty
+/// string. Throws OptionError for a patch that there is not.
 std::string add_group(TetMesh& mesh, const GroupRule& rule);
+
+/// Elements whose values of a field lie in the same part of its range.
+struct FieldBin {
+  std::string set;             ///< its name, "E_03"
+  double mean = 0;             ///< by volume
+  double least = 0, most = 0;  ///< of the values
+  std::uint64_t elements = 0;
+  double volume = 0;
+};
+/// Adds a set of elements for each of `count` equal parts of the range of a field of elements (one number each) that
+/// holds some: every element is in one of them. For sections of material, a constant each. Requires count > 0.
+std::vector<FieldBin> add_bins(TetMesh& mesh, const MeshField& field, std::uint32_t count);
 
 /// Adds the lines along which patches of the boundary and of interfaces meet, or a patch ends, as curves: one for each
 /// set of patches that meet, called "A|B" ("A + A|B + B" where names have bars) where all of them have names, "A end"

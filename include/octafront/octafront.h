@@ -12,6 +12,7 @@
 #include <octafront/generate.h>
 #include <octafront/ids.h>
 #include <octafront/image.h>
+#include <octafront/image_samples.h>
 #include <octafront/image_surface.h>
 #include <octafront/improve_existing.h>
 #include <octafront/io.h>

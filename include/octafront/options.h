@@ -39,6 +39,10 @@ struct PointSize {
 struct NamedSize {
   std::string name;
   double size = 0;  ///< > 0, input units
+  /// > 0: of a region this part of its thickness, from `size` to `most`: how far it is from a place of its boundary
+  /// through the region, along the normal, to the wall that faces it. 0: `size` everywhere.
+  double of_thickness = 0;
+  double most = 0;  ///< >= size; inside of the region sizes rise no higher
 };
 
 /// A size near a place. Within the place it is `size`; at a distance s from it size / (1 - s / distance), which rises

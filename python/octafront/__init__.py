@@ -69,8 +69,8 @@ def mesh_file(path, **keywords):
 
 
 def image_surface(image, affine=None, *, spacing=None, series=0, kind="auto", labels=None, ignore=None, merge=None,
-                  iso=None, bands=None, islands=None, holes=None, close_voxels=None, crop=None, resample=None,
-                  closed_at_box=True, progress=None, threads=0):
+                  iso=None, bands=None, islands=None, holes=None, contacts=None, close_voxels=None, crop=None,
+                  resample=None, closed_at_box=True, progress=None, threads=0):
     """The surfaces between the labels of an image, or between bands of its grey values: a Surface with a region for
     each, named. Smooth, volumes of labels kept. report["regions"] has their names and volumes, report["notes"] what was
     decided and changed.
@@ -86,6 +86,8 @@ def image_surface(image, affine=None, *, spacing=None, series=0, kind="auto", la
     iso: of a grey image; what has this value or more is the region "body".
     bands: {"skin": (-200, 226), "bone": (226, None)}: values from the first up to below the second; None: no limit.
     islands, holes: pieces of regions, and of the outside, below this volume go to what surrounds them.
+    contacts: where labels touch in spots below this area, or in strips of a voxel or two, a label beside them comes
+        between; "keep": nowhere. Without a value nowhere here, and in mesh_image() below the square of the size.
     close_voxels: gaps toward the outside close that are up to twice as many voxels wide.
     crop: ((i0, i1), (j0, j1), (k0, k1)), counted from 0, the last ones too; None for an end that stays.
     resample: spacing of the voxels to work with, one number or three.
@@ -96,7 +98,7 @@ def image_surface(image, affine=None, *, spacing=None, series=0, kind="auto", la
     >>> octafront.image_surface(labels, spacing=(1, 1, 2)).save("organs.ply")
     """
     regions = {"kind": kind, "labels": labels, "ignore": ignore, "merge": merge, "iso": iso, "bands": bands,
-               "islands": islands, "holes": holes, "close_voxels": close_voxels, "crop": crop, "resample": resample,
+               "islands": islands, "holes": holes, "contacts": None if contacts is None else str(contacts), "close_voxels": close_voxels, "crop": crop, "resample": resample,
                "closed_at_box": closed_at_box}
     return _surface_of_image(image, affine, spacing, series, regions, threads, progress)
 
@@ -104,17 +106,18 @@ def image_surface(image, affine=None, *, spacing=None, series=0, kind="auto", la
 @_takes_options("mesh", _inspect.signature(image_surface))
 def mesh_image(image, affine=None, **keywords):
     """A tetrahedral mesh of an image, one region per label or band: a Mesh. First image_surface(), then mesh(), with the
-    keywords of both: with size or elements there is at least one element across thin layers, and none smaller than a
-    voxel, unless gap and min_size say otherwise. report["image"] is the report of the first step.
+    keywords of both: a size coarser than voxels rules, thin layers get flat elements. report["image"] is the report of the first step.
 
     >>> octafront.mesh_image("head.nii.gz", labels={1: "skin", 2: "skull"}, size=4).save("head.msh")
     >>> octafront.mesh_image(nibabel_image.get_fdata(), nibabel_image.affine, elements=500_000)
     """
-    spacing, ranks = keywords.pop("spacing", None), _ranks_of(keywords.get("comm"))
+    spacing, size, ranks = keywords.pop("spacing", None), keywords.get("size"), _ranks_of(keywords.get("comm"))
 
     def way_in():
         settings = _Settings("mesh_image", "mesh", keywords, image)
         series = settings.intake.pop("series", 0)
+        if "contacts" in settings.intake or isinstance(size, (int, float)):
+            settings.intake["contacts"] = str(settings.intake.get("contacts", float(size or 0) ** 2))
         made = _surface_of_image(image, affine, spacing, series, {**settings.repeat, **settings.intake}, settings.threads,
                                  settings.progress)
         settings.intake = {}

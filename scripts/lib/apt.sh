@@ -27,6 +27,9 @@ first_packages=("${build_packages[@]:0:${#build_packages[@]}-1}")
 test_packages=(pkg-config libgtest-dev librapidcheck-dev libmetis-dev python3 python3-numpy python3-venv dpkg-dev file)
 # What octafront-cad stands on, which reads STEP, IGES and BREP; without it the rest is built.
 cad_packages=(libocct-data-exchange-dev libocct-ocaf-dev libocct-modeling-algorithms-dev libocct-modeling-data-dev libocct-foundation-dev)
+# What unpacks the JPEG families of DICOM (OCTAFRONT_GDCM); without it the rest is built.
+gdcm_packages=(libgdcm-dev)
+tiff_packages=(libtiff-dev)
 # What shares the work among processes (OCTAFRONT_MPI); without it the rest is built.
 mpi_packages=(libopenmpi-dev openmpi-bin)
 # And what Python programs speak with: of --all.
@@ -40,6 +43,6 @@ browser_packages=(chromium chromium-driver python3-selenium fonts-dejavu-core)
 # What reads manual, completions and schema (tests/cli): also of --all; without them these are read by fewer programs.
 shell_packages=(groff zsh fish python3-jsonschema)
 # What reads images beside us (tests/images): also of --all.
-image_packages=(python3-nibabel python3-pydicom)
+image_packages=(python3-nibabel python3-pydicom libgdcm-dev libgdcm-tools libtiff-dev)
 # Other meshers, which some benchmarks run beside ours.
 peer_packages=(tetgen gmsh netgen)

@@ -141,7 +141,7 @@ printf '%s\\n' "${{COMPREPLY[@]}}" """
     def test_bash_completes_commands_options_and_values(self):
         self.assertEqual(self.complete_in_bash("octafront", "me"), ["mesh"])
         self.assertEqual(self.complete_in_bash("octafront", "mesh", "a.stl", "--gradat"), ["--gradation"])
-        self.assertEqual(self.complete_in_bash("octafront", "mesh", "--preset", ""), ["draft", "standard", "fine"])
+        self.assertEqual(self.complete_in_bash("octafront", "mesh", "--preset", ""), ["draft", "standard", "fine", "head"])
         self.assertEqual(self.complete_in_bash("octafront", "completion", ""), ["bash", "zsh", "fish"])
         for command in self.commands():
             offered = set(self.complete_in_bash("octafront", command, "--"))

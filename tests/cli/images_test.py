@@ -212,6 +212,50 @@ class Images(unittest.TestCase):
         self.run_cli("check", self.two_boxes(), "--closed-at-box=no")
         self.run_cli("check", LABELS, "--closed-at-box")
 
+    def test_grey_values_become_fields_and_materials(self):
+        size = (14, 12, 10)
+        ct = self.write("ct.nii", nifti(size, [100 + 10 * (n % 14) for n in range(14 * 12 * 10)], 4, "h"))
+        mesh, deck, report = self.dir / "m.vtu", self.dir / "m.inp", self.dir / "m.json"
+        law = ("--sample", f"{ct}=HU", "--field", "E = 3 * HU", "--material-bins", 4)
+        done = self.run_cli("mesh", self.two_boxes(), "-o", mesh, "-o", deck, "--size", 2, "--json", report, *law)
+        self.assertIn("mean E", done.stdout)
+        bins = json.loads(report.read_text())["material_bins"]
+        self.assertEqual([b["set"] for b in bins], ["E_1", "E_2", "E_3", "E_4"])
+        self.assertAlmostEqual(sum(b["volume"] for b in bins), 8 * 8 * 6, 0)
+        for b in bins:
+            self.assertTrue(b["least"] <= b["mean"] <= b["most"])
+            self.assertIn(f"*SOLID SECTION, ELSET={b['set']}, MATERIAL={b['set']}", deck.read_text())
+        # Between the middles of voxels 2 and 9, faces half a voxel beyond.
+        self.assertTrue(3 * 110 <= bins[0]["least"] and bins[-1]["most"] <= 3 * 200, bins)
+        self.assertIn("metric", self.run_cli("adapt", mesh, "-o", self.dir / "a.vtu", "--from", "HU", "--elements", 500).stdout)
+        self.run_cli("mesh", self.two_boxes(), "-o", deck, "--material-bins", 4, status=2)
+        self.run_cli("mesh", self.two_boxes(), "-o", deck, "--sample", f"{ct}=HU", "--field", "E=rho", status=2)
+        self.run_cli("mesh", self.two_boxes(), "-o", deck, "--sample", f"{mesh}=HU", status=3)
+
+    def test_a_cut_is_a_patch_and_groups_name_it(self):
+        mesh = self.dir / "cut.vtu"
+        half = ("--crop", "0:5,:,:", "--size", 2)
+        self.run_cli("mesh", self.two_boxes(), "-o", mesh, *half, "--group", "FIX=patches:box_i1")
+        patches = {p["name"] for p in self.info(mesh)["patches"]} if "patches" in self.info(mesh) else set()
+        self.assertIn("box_i1", str(self.info(mesh)), patches)
+        self.assertIn("FIX", str(self.info(mesh)))
+        message = self.run_cli("mesh", self.two_boxes(), "-o", self.dir / "no.vtu", *half, "--group", "FIX=patches:nosuch", status=2)
+        self.assertIn("box_i1", message.stderr)
+        self.assertFalse((self.dir / "no.vtu").exists())
+        self.run_cli("convert", mesh, "-o", self.dir / "no.vtu", "--group", "FIX=patches:nosuch", status=2)
+
+    def test_electrodes_are_discs_on_the_skin(self):
+        size = (30, 30, 20)
+        image = self.write("plate.nii", nifti(size, boxes(size, (5, (2, 2, 2), (28, 28, 10)))))
+        made = self.volumes(image, "--electrode", "15,15,30:6:3", "--electrode", "3,15,6:3:2")
+        self.assertEqual(list(made), ["label 5", "electrode 1", "electrode 2"])
+        self.assertAlmostEqual(made["electrode 1"] / (3.1416 * 36 * 3), 1, 1)
+        self.assertIn("electrode 1: ", self.run_cli("check", image, "--electrode", "15,15,30:6:3", "--electrode", "3,15,6:3:2").stdout)
+        self.assertEqual(list(self.volumes(image, "--electrode", "15,15,9:6:3")), ["label 5", "electrode"])
+        for bad in ("1,2:3:4", "1,2,3:4", "1,2,3:0:4", "1,2,3:x:4"):
+            self.run_cli("check", image, "--electrode", bad, status=2)
+        self.run_cli("check", CT, "--band", "100:", "--electrode", "0,0,0:5:5", status=2)
+
     def test_cropping_and_resampling(self):
         image = self.two_boxes()
         cropped = self.volumes(image, "--crop", "0:5,:,:")
@@ -248,7 +292,7 @@ class Images(unittest.TestCase):
         message = self.run_cli("check", self.write("cut.nii.gz", data[:-40]), status=3).stderr
         self.assertIn("cut.nii.gz", message)
         self.assertIn("--series is for images", self.run_cli("check", SAMPLES / "gear.obj", "--series", 1, status=2).stderr)
-        self.assertIn("without DICOM files", self.run_cli("info", self.dir, status=3).stderr)
+        self.assertIn("is no mask", self.run_cli("info", self.dir, status=3).stderr)
 
     def test_info_describes_the_grid(self):
         found = self.info(LABELS)

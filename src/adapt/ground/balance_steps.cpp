@@ -73,9 +73,10 @@ class Balance {
     const double twice = length(normal), reach = kReachOfBalance * std::sqrt(longest_squared_edge(c[0], c[1], c[2]));
     Vec3 volumes{};
     if (!(twice > 0)) return volumes;
+    std::uint32_t near = kNone;
     for_each_place([&](Vec3 w) {
       const Vec3 from = smooth_.surface_point({w.x * c[0] + w.y * c[1] + w.z * c[2], t});
-      const auto to = ground_.on_surface(from, walls_.surface.patch[t], walls_.outer[t] != 0, normal, reach);
+      const auto to = ground_.on_surface(from, walls_.surface.patch[t], walls_.outer[t] != 0, normal, reach, near);
       if (to) volumes += dot(*to - from, normal) / (2 * kPlaces) * w;
     });
     return volumes;

@@ -157,7 +157,8 @@ std::optional<Vec3> Ground::corner(VertexIndex v) const {
   return at->second;
 }
 
-std::optional<curved::Foot> Ground::foot(Vec3 p, std::uint32_t part, bool outer, Vec3 normal, double reach) const {
+std::optional<curved::Foot> Ground::foot(Vec3 p, std::uint32_t part, bool outer, Vec3 normal, double reach,
+                                         std::uint32_t& near) const {
   const double least = kLeastCosineOfFoot * length(normal);
   const auto fits = [&](std::uint32_t t, const TriangleCorners& c) {
     if (walls_.surface.patch[t] != part) return false;
@@ -165,13 +166,15 @@ std::optional<curved::Foot> Ground::foot(Vec3 p, std::uint32_t part, bool outer,
     const double cosine = dot(n, normal);
     return (outer ? cosine : std::abs(cosine)) >= least * length(n);
   };
-  const TriangleTree::Nearest nearest = nearest_that(tree_, p, reach + farthest_, fits);
+  const TriangleTree::Nearest nearest = nearest_that(tree_, p, reach + farthest_, fits, near);
   if (nearest.triangle == kNone) return std::nullopt;
+  near = nearest.triangle;
   return curved::Foot{nearest.point, nearest.triangle};
 }
 
-std::optional<Ground::Home> Ground::home(Vec3 p, std::uint32_t part, bool outer, Vec3 normal, double reach) const {
-  const auto at = foot(p, part, outer, normal, reach);
+std::optional<Ground::Home> Ground::home(Vec3 p, std::uint32_t part, bool outer, Vec3 normal, double reach,
+                                         std::uint32_t& near) const {
+  const auto at = foot(p, part, outer, normal, reach, near);
   if (!at) return std::nullopt;
   const auto& [a, b, c] = tree_.corners(at->on);
   if (!is_covered(at->on)) return Home{smooth_over(*at), double_area_normal(a, b, c)};
@@ -180,8 +183,9 @@ std::optional<Ground::Home> Ground::home(Vec3 p, std::uint32_t part, bool outer,
   return Home{on->at, on->normal};
 }
 
-std::optional<Vec3> Ground::on_surface(Vec3 p, std::uint32_t part, bool outer, Vec3 normal, double reach) const {
-  const auto at = home(p, part, outer, normal, reach);
+std::optional<Vec3> Ground::on_surface(Vec3 p, std::uint32_t part, bool outer, Vec3 normal, double reach,
+                                       std::uint32_t& near) const {
+  const auto at = home(p, part, outer, normal, reach, near);
   if (!at) return std::nullopt;
   return at->at;
 }
@@ -330,18 +334,22 @@ std::vector<Edge> Ground::kinks(const std::function<double(Vec3, Vec3)>& wanted,
   return found;
 }
 
+Ground::Truth Ground::truth_at(Vec3 place, Vec3 normal, std::uint32_t part, bool outer, double reach,
+                               std::uint32_t& near) const {
+  const auto at = home(place, part, outer, normal, reach, near);
+  if (!at) return {HUGE_VAL, -1};
+  const double cosine = dot(at->normal, normal) / (length(at->normal) * length(normal) + 1e-300);
+  return {distance(place, at->at), outer ? cosine : std::abs(cosine)};
+}
+
 Ground::Truth Ground::truth_of(const TriangleCorners& t, std::uint32_t part, bool outer, double reach) const {
   const Vec3 normal = double_area_normal(t[0], t[1], t[2]);
-  Truth truth;
-  const std::array<Vec3, 4> places{centroid(t[0], t[1], t[2]), 0.5 * (t[0] + t[1]), 0.5 * (t[1] + t[2]),
-                                   0.5 * (t[2] + t[0])};
-  for (std::size_t k = 0; k < places.size(); ++k) {
-    const auto at = home(places[k], part, outer, normal, reach);
-    if (!at) return {HUGE_VAL, -1};
-    truth.distance = std::max(truth.distance, distance(places[k], at->at));
-    if (k != 0) continue;
-    const double cosine = dot(at->normal, normal) / (length(at->normal) * length(normal) + 1e-300);
-    truth.cosine = outer ? cosine : std::abs(cosine);
+  std::uint32_t near = kNone;
+  Truth truth = truth_at(centroid(t[0], t[1], t[2]), normal, part, outer, reach, near);
+  for (std::size_t k = 0; k < 3 && std::isfinite(truth.distance); ++k) {
+    const Truth beside = truth_at(0.5 * (t[k] + t[(k + 1) % 3]), normal, part, outer, reach, near);
+    if (!std::isfinite(beside.distance)) return beside;
+    truth.distance = std::max(truth.distance, beside.distance);
   }
   return truth;
 }

@@ -56,7 +56,13 @@ class Ground {
 
   /// The place on the reference surface of a part that is nearest to p; none if it is farther than `reach`, or turned
   /// away from `normal`. The outer boundary must face outward, interfaces and sheets may face either way.
-  std::optional<Vec3> on_surface(Vec3 p, std::uint32_t part, bool outer, Vec3 normal, double reach) const;
+  std::optional<Vec3> on_surface(Vec3 p, std::uint32_t part, bool outer, Vec3 normal, double reach) const {
+    std::uint32_t near = kNone;
+    return on_surface(p, part, outer, normal, reach, near);
+  }
+  /// `near`: a triangle of the walls that may be near, or kNone; becomes the one found.
+  std::optional<Vec3> on_surface(Vec3 p, std::uint32_t part, bool outer, Vec3 normal, double reach,
+                                 std::uint32_t& near) const;
   /// The same on the reference curve of a path.
   std::optional<Vec3> on_line(Vec3 p, std::uint32_t path, double reach) const;
 
@@ -71,6 +77,9 @@ class Ground {
     double cosine = 1;    ///< of the angle between a triangle and the surface at its middle
   };
   Truth truth_of(const TriangleCorners& t, std::uint32_t part, bool outer, double reach) const;
+  /// The same at one place of a triangle with this normal. `near`: a triangle of the walls that may be near, or kNone;
+  /// becomes the one found.
+  Truth truth_at(Vec3 place, Vec3 normal, std::uint32_t part, bool outer, double reach, std::uint32_t& near) const;
 
   /// The smooth surface of a triangle of the walls, as triangles whose middles, and those of their edges, are within
   /// `tolerance` of it, or which are a thousandth of the whole.
@@ -88,7 +97,9 @@ class Ground {
   const TriangleTree& tree() const { return tree_; }
 
  private:
-  std::optional<curved::Foot> foot(Vec3 p, std::uint32_t part, bool outer, Vec3 normal, double reach) const;
+  /// `near`: of nearest_that(); becomes the triangle found.
+  std::optional<curved::Foot> foot(Vec3 p, std::uint32_t part, bool outer, Vec3 normal, double reach,
+                                   std::uint32_t& near) const;
 
   /// How far from the ground edges so long can be that have their ends to both sides of this edge.
   double cut_off(std::size_t edge, double length) const;
@@ -102,7 +113,8 @@ class Ground {
     Vec3 at;
     Vec3 normal;  ///< of any length
   };
-  std::optional<Home> home(Vec3 p, std::uint32_t part, bool outer, Vec3 normal, double reach) const;
+  std::optional<Home> home(Vec3 p, std::uint32_t part, bool outer, Vec3 normal, double reach,
+                           std::uint32_t& near) const;
   /// For a place of a line that the given surface does not have: on its surface, where a side of the line has it.
   Vec3 beside_line(Vec3 p, std::uint32_t edge) const;
 

@@ -5,16 +5,25 @@
 #include "base/geometry/measures.h"
 #include "base/geometry/triangle_tree.h"
 
+#include <algorithm>
+#include <cmath>
+#include <cstdint>
 #include <span>
 #include <vector>
 
 namespace octafront::adapt {
 
 /// The nearest point within reach of p on a triangle for which fits(triangle, corners); the triangle is kNone if there
-/// is none.
+/// is none. `near`: a triangle that may be near, kNone: none is known; makes the search short, and changes no result.
 template <class Fits>
-TriangleTree::Nearest nearest_that(const TriangleTree& tree, Vec3 p, double reach, const Fits& fits) {
-  const TriangleTree::Nearest first = tree.nearest(p, reach * reach);
+TriangleTree::Nearest nearest_that(const TriangleTree& tree, Vec3 p, double reach, const Fits& fits,
+                                   std::uint32_t near = kNone) {
+  double limit = reach * reach;
+  if (near != kNone) {
+    const auto& [a, b, c] = tree.corners(near);
+    limit = std::min(limit, std::nextafter(squared_distance(p, closest_point_on_triangle(p, a, b, c)), HUGE_VAL));
+  }
+  const TriangleTree::Nearest first = tree.nearest(p, limit);
   if (first.triangle == kNone || fits(first.triangle, tree.corners(first.triangle))) return first;
   TriangleTree::Nearest best;
   best.squared_distance = reach * reach;

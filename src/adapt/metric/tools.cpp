@@ -133,7 +133,26 @@ class Grading {
 };
 
 double scale_for(const TetMesh& mesh, std::span<const Metric> metrics, double target, const Bounds& bounds) {
-  const auto reached = [&](double factor) { return complexity_of(mesh, scaled_and_cut(metrics, factor, bounds)); };
+  // What is asked about many factors needs the eigenvalues alone, and the share of each point in the volume.
+  std::vector<std::array<double, 3>> values(metrics.size());
+  parallel_for(values.size(), [&](std::size_t v) { values[v] = adapt::eigen(metrics[v]).value; });
+  std::vector<double> volume(metrics.size(), 0);
+  for (const Tet& t : mesh.tets) {
+    const double six = six_volumes(mesh.points[t[0]], mesh.points[t[1]], mesh.points[t[2]], mesh.points[t[3]]);
+    for (const VertexIndex v : t) volume[v] += six / 24;
+  }
+  const auto [most, least] = values_of(bounds);
+  const auto reached = [&](double factor) {
+    return parallel_sum(volume.size(), [&](std::size_t begin, std::size_t end) {
+      double sum = 0;
+      for (std::size_t v = begin; v < end; ++v) {
+        double determinant = 1;
+        for (const double value : values[v]) determinant *= std::clamp(factor * value, least, most);
+        sum += volume[v] * std::sqrt(determinant);
+      }
+      return sum;
+    });
+  };
   const double start = complexity_of(mesh, metrics);
   const double power = target / start;
   double factor = elementary::cbrt(power * power);

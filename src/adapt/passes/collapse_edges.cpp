@@ -2,6 +2,7 @@
 
 #include "adapt/passes/metric_passes.h"
 #include "adapt/passes/worth.h"
+#include "base/mesh/link_condition.h"
 
 #include <algorithm>
 #include <cmath>
@@ -52,6 +53,11 @@ class EdgeCollapser {
     std::vector<TetIndex> old;
     std::vector<Piece::NewTet> fresh;
     std::vector<Piece::NewWall> walls;
+
+    void clear() {
+      gone = onto = kNone, worst = 0;
+      old.clear(), fresh.clear(), walls.clear();
+    }
   };
 
   PassCount sweep(int round) {
@@ -78,6 +84,10 @@ class EdgeCollapser {
     const auto waits = [&](VertexIndex v) {
       return round == 0 ? mends_ || piece_.vertices[v].active : changed_[v] == round;
     };
+    worst_at_.assign(piece_.vertices.size(), 2);
+    for (TetIndex t = 0; t < piece_.complex.slots(); ++t)
+      if (piece_.complex.alive(t))
+        for (const VertexIndex v : piece_.tet(t)) worst_at_[v] = std::min(worst_at_[v], piece_.score[t]);
     for (TetIndex t = 0; t < piece_.complex.slots(); ++t) {
       if (!piece_.complex.alive(t)) continue;
       const Tet& c = piece_.tet(t);
@@ -87,8 +97,12 @@ class EdgeCollapser {
       for (const auto& [i, j] : kTetEdges) {
         const Vertex &p = piece_.vertices[c[i]], &q = piece_.vertices[c[j]];
         if (!(waits(c[i]) || waits(c[j])) || (!may_go(p) && !may_go(q))) continue;
+        // Around others there is one that is poorer, and asks by itself.
+        const float score = piece_.score[t];
+        const bool helps = goes && (mends_ || worst_at_[c[i]] == score || worst_at_[c[j]] == score);
+        if (!helps && squared_bounds(p, q, piece_.isotropic).surely_beyond(kShortest)) continue;
         const double l = piece_.edge_length(c[i], c[j]);
-        if (l < kShortest || goes) found.push_back({l, sorted_edge(c[i], c[j]), t});
+        if (l < kShortest || helps) found.push_back({l, sorted_edge(c[i], c[j]), t});
       }
     }
     const auto before = [](const Short& a, const Short& b) {
@@ -105,13 +119,16 @@ class EdgeCollapser {
 
   bool collapse(TetIndex t, VertexIndex a, VertexIndex b) {
     if (!piece_.ring(t, a, b, ring_)) return false;
-    Plan one, other;
-    if (may_go(piece_.vertices[a])) plan(a, b, one);
-    if (may_go(piece_.vertices[b])) plan(b, a, other);
-    const Plan& best = other.worst > one.worst ? other : one;
-    if (!(best.worst > 0)) return false;
-    apply(best);
-    return true;
+    one_.clear(), other_.clear();
+    if (may_go(piece_.vertices[a])) plan(a, b, one_);
+    if (may_go(piece_.vertices[b])) plan(b, a, other_);
+    const bool first = !(other_.worst > one_.worst);
+    for (Plan* plan : {first ? &one_ : &other_, first ? &other_ : &one_}) {
+      if (!(plan->worst > 0) || !keeps_surface(*plan)) continue;
+      apply(*plan);
+      return true;
+    }
+    return false;
   }
 
   /// Whether the vertex may go to the other end as far as walls and lines are concerned.
@@ -144,10 +161,11 @@ class EdgeCollapser {
 
   void plan(VertexIndex u, VertexIndex w, Plan& out) {
     if (!kinds_allow(u, w)) return;
-    const Kind kind = piece_.vertices[u].kind;
     out.gone = u, out.onto = w;
-    if (!plan_tets(out)) return out.worst = 0, void();
-    if (kind != Kind::kInner && (!keeps_manifold(u, w) || !plan_walls(out))) out.worst = 0;
+    if (!plan_tets(out)) out.worst = 0;
+  }
+  bool keeps_surface(Plan& out) {
+    return piece_.vertices[out.gone].kind == Kind::kInner || (keeps_manifold(out.gone, out.onto) && plan_walls(out));
   }
 
   bool plan_tets(Plan& out) {
@@ -182,11 +200,10 @@ class EdgeCollapser {
         if (v != plan.gone && v != plan.onto && seen_[v] != stamp_) seen_[v] = stamp_, around_.push_back(v);
     double longest_had = -1;
     for (const VertexIndex v : around_) {
-      const double l = piece_.edge_length(plan.onto, v);
-      if (l <= kLongestOfCollapse) continue;
+      if (!piece_.is_longer(plan.onto, v, kLongestOfCollapse)) continue;
       if (longest_had < 0)
         for (const VertexIndex u : around_) longest_had = std::max(longest_had, piece_.edge_length(plan.gone, u));
-      if (l > longest_had) return false;
+      if (piece_.edge_length(plan.onto, v) > longest_had) return false;
     }
     return true;
   }
@@ -235,58 +252,17 @@ class EdgeCollapser {
     return {piece_.point(f[0]), piece_.point(f[1]), piece_.point(f[2])};
   }
 
-  /// The link condition (T. Dey, H. Edelsbrunner, S. Guha, D. Nekhayev, "Topology preserving edge contraction", 1999),
-  /// for a vertex on walls: the tets on all sides, and the walls by themselves.
+  /// For a vertex on walls: the tets on all sides, and the walls by themselves.
   bool keeps_manifold(VertexIndex u, VertexIndex w) {
-    link_of(u, link_), link_of(w, other_link_);
-    edge_link_.clear(), edge_walls_.clear();
-    for (const TetIndex t : ring_.tets)
-      for (const VertexIndex v : piece_.tet(t))
-        if (v != u && v != w) edge_link_.push_back(v);
-    make_set(edge_link_);
-    return meet_only_in(link_.vertices, other_link_.vertices, edge_link_) && common_edges() == ring_.tets.size() &&
-           meet_only_in(link_.wall_vertices, other_link_.wall_vertices, walls_of_ring());
-  }
-
-  struct Link {
-    std::vector<VertexIndex> vertices, wall_vertices;
-    std::vector<Edge> edges;
-  };
-  void link_of(VertexIndex v, Link& link) {
-    link.vertices.clear(), link.wall_vertices.clear(), link.edges.clear();
-    for (const TetIndex t : piece_.star(v)) {
-      const HalfFace base = piece_.complex.opposite(t, v);
-      const Triangle f = piece_.complex.face(base);
-      for (int i = 0; i < 3; ++i) {
-        link.vertices.push_back(f[i]);
-        link.edges.push_back(sorted_edge(f[i], f[(i + 1) % 3]));
-        if (piece_.wall[piece_.complex.opposite(t, f[i])] == 0) continue;
-        link.wall_vertices.push_back(f[(i + 1) % 3]), link.wall_vertices.push_back(f[(i + 2) % 3]);
-      }
-    }
-    make_set(link.vertices), make_set(link.wall_vertices), make_set(link.edges);
-  }
-  static bool meet_only_in(const std::vector<VertexIndex>& a, const std::vector<VertexIndex>& b,
-                           const std::vector<VertexIndex>& allowed) {
-    std::vector<VertexIndex> common;
-    std::set_intersection(a.begin(), a.end(), b.begin(), b.end(), std::back_inserter(common));
-    return std::includes(allowed.begin(), allowed.end(), common.begin(), common.end());
-  }
-  std::size_t common_edges() const {
-    std::vector<Edge> common;
-    std::set_intersection(link_.edges.begin(), link_.edges.end(), other_link_.edges.begin(), other_link_.edges.end(),
-                          std::back_inserter(common));
-    return common.size();
-  }
-  /// The vertices of walls at the edge beside its ends.
-  const std::vector<VertexIndex>& walls_of_ring() {
-    for (std::size_t k = 0; k < ring_.tets.size(); ++k) {
-      const VertexIndex from = ring_.ring[k], to = ring_.ring[(k + 1) % ring_.ring.size()];
-      if (piece_.wall[piece_.complex.opposite(ring_.tets[k], to)] != 0) edge_walls_.push_back(from);
-      if (piece_.wall[piece_.complex.opposite(ring_.tets[k], from)] != 0) edge_walls_.push_back(to);
-    }
-    make_set(edge_walls_);
-    return edge_walls_;
+    const auto tet = [&](TetIndex t) -> const Tet& { return piece_.tet(t); };
+    const auto is_wall = [&](HalfFace h) { return piece_.wall[h] != 0; };
+    const auto faces_behind = [&](VertexIndex v) -> std::span<const HalfFace> {
+      star_.clear();
+      for (const TetIndex t : piece_.star(v)) star_.push_back(piece_.complex.opposite(t, v));
+      return star_;
+    };
+    const VertexLink of_w = link_of(faces_behind(w), tet, is_wall), of_u = link_of(faces_behind(u), tet, is_wall);
+    return may_contract(of_u, of_w, link_of(star_, tet, is_wall, w));
   }
 
   void apply(const Plan& p) {
@@ -311,8 +287,10 @@ class EdgeCollapser {
   const Guide& guide_;
   bool mends_;
   EdgeRing ring_;
-  Link link_, other_link_;
-  std::vector<VertexIndex> edge_link_, edge_walls_, around_;
+  Plan one_, other_;
+  std::vector<HalfFace> star_;
+  std::vector<float> worst_at_;  ///< per vertex: the least score of its elements
+  std::vector<VertexIndex> around_;
   std::vector<int> changed_;         ///< per vertex: one more than the last round that changed something around it
   std::vector<std::uint32_t> seen_;  ///< per vertex: the last stamp it got
   std::uint32_t stamp_ = 0;

@@ -107,8 +107,7 @@ class Inserter {
 
   float worth_with(const Triangle& f, const Vertex& at) const {
     // Seen from outside the face turns the other way than from the vertex inside.
-    return worth_of_corners({&at, &piece_.vertices[f[0]], &piece_.vertices[f[1]], &piece_.vertices[f[2]]},
-                            piece_.isotropic);
+    return worth_of_corners({&at, &piece_.vertices[f[0]], &piece_.vertices[f[1]], &piece_.vertices[f[2]]}, piece_);
   }
 
   /// Whether what lies inside, edges and vertices, may vanish.

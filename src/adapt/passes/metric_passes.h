@@ -46,8 +46,9 @@ struct PassCount {
 
 /// Splits edges longer than kLongest, the longest ones first by powers of sqrt 2, until none is left, the piece has so
 /// many vertices, or what is left is much shorter than edges of the rim. New vertices of walls and lines go to the
-/// ground, as far as the tets around allow.
-PassCount split_long_edges(Piece& piece, const Guide& guide, std::size_t most_vertices);
+/// ground, as far as the tets around allow. A split that makes edges shorter than `shortest` waits until the place is
+/// connected better.
+PassCount split_long_edges(Piece& piece, const Guide& guide, std::size_t most_vertices, double shortest);
 
 /// Collapses edges shorter than kShortest, the shortest ones first, where that leaves no edge that is too long and no
 /// element too poor, and walls true.

@@ -1,9 +1,9 @@
 #include "adapt/passes/piece.h"
 
 #include "base/core/validate.h"
-#include "base/geometry/predicates.h"
 
 #include <algorithm>
+#include <bit>
 #include <cmath>
 
 namespace octafront::adapt {
@@ -16,7 +16,7 @@ constexpr float kLittleChange = 0.04f;
 
 Piece::Piece(const Parts& mesh, std::span<const TetIndex> tets, std::span<const Parts::Line> lines,
              std::vector<VertexIndex>& here)
-    : isotropic(mesh.isotropic), lines_(lines.size()) {
+    : isotropic(mesh.isotropic), poor(mesh.poor), lines_(lines.size()) {
   std::vector<VertexIndex> taken;
   complex.tets.reserve(tets.size() + tets.size() / 2);
   region.reserve(tets.size());
@@ -54,21 +54,6 @@ void Piece::connect() {
   for (TetIndex t = 0; t < score.size(); ++t) score[t] = score_of(tet(t));
 }
 
-float score_of_corners(const std::array<const Vertex*, 4>& c, bool isotropic) {
-  const Vec3 p = c[0]->at, q = c[1]->at, r = c[2]->at, s = c[3]->at;
-  const auto estimate = detail::orient3d_estimate(p, q, r, s);
-  const int certain = estimate.certain_sign();
-  if (certain < 0 || (certain == 0 && orient3d(p, q, r, s) <= 0)) return 0;
-  double worth = 0;
-  if (isotropic) {  // a size makes all lengths longer alike: the shape alone counts
-    worth = metric_score(estimate.det, p, q, r, s);
-  } else {
-    const Vertex& d = densest_of(c);
-    worth = metric_score(estimate.det, d.metric, d.density, p, q, r, s);
-  }
-  return std::max(static_cast<float>(worth), 1e-30f);
-}
-
 bool Piece::ring(TetIndex t, VertexIndex a, VertexIndex b, EdgeRing& out, float least) const {
   const int i = complex.corner_of(t, a), j = complex.corner_of(t, b);
   const auto is_fair = [&](TetIndex next) { return score[next] >= least; };
@@ -98,23 +83,35 @@ TetIndex Piece::tet_with(VertexIndex a, VertexIndex b, TetIndex guess) {
   return kNone;
 }
 
-void Piece::toggle(const Triangle& corners, HalfFace across, Wall label) {
-  Rim& there = rim_.find_or_add(face_key(corners));
-  if (there.open)
-    there.open = false;
-  else
-    there = {across, label, true};
+void Piece::OpenFaces::reset(std::size_t faces) {
+  const std::size_t least = std::bit_ceil(2 * faces);
+  if (slots_.size() < least) slots_.assign(least, {}), use_ = 0;
+  if (++use_ == 0) std::ranges::fill(slots_, Slot{}), use_ = 1;
+  shift_ = 64 - std::countr_zero(slots_.size());
+}
+
+bool Piece::OpenFaces::take_or_put(const Triangle& corners, const Rim& put, Rim& taken) {
+  const Triangle key = face_key(corners);
+  const auto is_key = [&](const Triangle& k) { return k[0] == key[0] && k[1] == key[1] && k[2] == key[2]; };
+  std::size_t at = FlatKeys<Triangle>::hash(key) >> shift_;
+  while (slots_[at].use == use_ && !is_key(slots_[at].key)) at = (at + 1) & (slots_.size() - 1);
+  Slot& slot = slots_[at];
+  if (slot.use == use_ && slot.waits) {
+    taken = slot.rim;
+    slot.waits = false;
+    return true;
+  }
+  slot = {key, use_, true, put};
+  return false;
 }
 
 void Piece::tie(TetIndex t) {
   for (HalfFace h = 4 * t; h < 4 * t + 4; ++h) {
-    Rim& there = rim_.find_or_add(face_key(complex.face(h)));
-    if (!there.open) {
-      there = {h, 0, true};
+    Rim there;
+    if (!rim_.take_or_put(complex.face(h), {h, 0}, there)) {
       wall[h] = 0;
       continue;
     }
-    there.open = false;
     wall[h] = there.wall;
     complex.join(h, there.across);
   }
@@ -138,19 +135,19 @@ TetIndex Piece::slot() {
 
 void Piece::replace(std::span<const TetIndex> old, std::span<const NewTet> fresh, std::span<const NewWall> walls) {
   rim_.reset(4 * (old.size() + fresh.size()));
+  const std::uint32_t goes = complex.new_mark();
+  for (const TetIndex t : old) complex.marks[t] = goes;
+  Rim there;
   for (const TetIndex t : old)
-    for (HalfFace h = 4 * t; h < 4 * t + 4; ++h) toggle(complex.face(h), complex.across[h], wall[h]);
+    for (HalfFace h = 4 * t; h < 4 * t + 4; ++h) {
+      const HalfFace o = complex.across[h];
+      if (is_outside(o) || complex.marks[o / 4] != goes) rim_.take_or_put(complex.face(h), {o, wall[h]}, there);
+    }
   for (const TetIndex t : old)
     for (const VertexIndex v : tet(t)) complex.tet_at[v] = kNone;
   // Where a tet goes without another in its place, the wall lies on its neighbour.
   for (const NewWall& w : walls) {
-    if ((w.wall & kOuter) == 0) continue;
-    Rim& there = rim_.find_or_add(face_key(w.corners));
-    if (!there.open) {
-      there = {kOutside, w.wall, true};
-      continue;
-    }
-    there.open = false;
+    if ((w.wall & kOuter) == 0 || !rim_.take_or_put(w.corners, {kOutside, w.wall}, there)) continue;
     complex.across[there.across] = kOutside;
     wall[there.across] = w.wall;
     for (const VertexIndex v : w.corners) complex.tet_at[v] = there.across / 4;

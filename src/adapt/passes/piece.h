@@ -7,10 +7,13 @@
 
 #include "adapt/metric/metric.h"
 #include "base/core/flat_map.h"
+#include "base/geometry/predicates.h"
 #include "base/mesh/tet_complex.h"
 
+#include <algorithm>
 #include <array>
 #include <cmath>
+#include <cstddef>
 #include <cstdint>
 #include <optional>
 #include <span>
@@ -22,12 +25,9 @@ namespace octafront::adapt {
 /// How free a vertex is.
 enum class Kind : std::uint8_t { kInner, kSurface, kCurve, kFixed };
 
-struct Vertex {
+/// What passes ask about most lies in one line of the cache.
+struct alignas(64) Vertex {
   Vec3 at;
-  Metric metric;
-  double density = 1;        ///< density_of(metric)
-  std::uint32_t id = kNone;  ///< in the mesh that was given; kNone: new
-  std::uint32_t hint = 0;    ///< where the metric was looked up (MetricField::at)
   Kind kind = Kind::kInner;
   bool rim = false;     ///< of a piece: some of its tets are not there, so it stays
   bool active = true;   ///< something may be left to connect, split or collapse around it
@@ -40,7 +40,12 @@ struct Vertex {
   /// For what mends: kStirred, something around it changed; kSettling, just before the cycle that is under way; kCalm,
   /// all that could be tried around it has been, in vain.
   enum Calmness : std::uint8_t { kCalm, kSettling, kStirred } calmness = kStirred;
+  std::uint32_t id = kNone;  ///< in the mesh that was given; kNone: new
+  std::uint32_t hint = 0;    ///< where the metric was looked up (MetricField::at)
+  double density = 1;        ///< density_of(metric)
+  Metric metric;
 };
+static_assert(offsetof(Vertex, metric) + sizeof(double) <= 64);
 
 /// The label of a half-face that lies on a wall, else 0: one more than the number of the part, and kOuter where nothing
 /// lies across.
@@ -65,8 +70,42 @@ inline double length_between(const Vertex& p, const Vertex& q, bool isotropic) {
   const double squared = dot(e, e);
   return log_mean(std::sqrt(p.metric.xx * squared), std::sqrt(q.metric.xx * squared));
 }
+/// Bounds of the squared length of an edge: most of them need no more to be told short, long or neither.
+struct SquaredBounds {
+  double least, most;
+
+  bool surely_within(double length) const { return most <= (1 - kSlack) * length * length; }
+  bool surely_beyond(double length) const { return least >= (1 + kSlack) * length * length; }
+
+ private:
+  static constexpr double kSlack = 1e-9;  ///< more than lengths and their squares differ by rounding
+};
+/// A length lies between those in the metrics of the two ends.
+inline SquaredBounds squared_bounds(const Vertex& p, const Vertex& q, bool isotropic) {
+  const Vec3 e = q.at - p.at;
+  const double squared = dot(e, e), a = isotropic ? p.metric.xx * squared : p.metric.squared(e),
+               b = isotropic ? q.metric.xx * squared : q.metric.squared(e);
+  return {std::min(a, b), std::max(a, b)};
+}
 /// The score of a tet with these corners, 0 if it is not positive by exact sign.
-float score_of_corners(const std::array<const Vertex*, 4>& c, bool isotropic);
+inline float score_of_corners(const std::array<const Vertex*, 4>& c, bool isotropic) {
+  // Of elements of a better score the sign of the volume is beyond doubt: rounding is 1e-14 of the edges at most.
+  constexpr double kCertainScore = 1e-9;
+  const Vec3 p = c[0]->at, q = c[1]->at, r = c[2]->at, s = c[3]->at;
+  const auto estimate = detail::orient3d_estimate(p, q, r, s);
+  double worth = 0;
+  if (isotropic) {  // a size makes all lengths longer alike: the shape alone counts
+    worth = metric_score(estimate.det, p, q, r, s);
+    if (worth > kCertainScore) return static_cast<float>(worth);
+  }
+  const int certain = estimate.certain_sign();
+  if (certain < 0 || (certain == 0 && orient3d(p, q, r, s) <= 0)) return 0;
+  if (!isotropic) {
+    const Vertex& d = densest_of(c);
+    worth = metric_score(estimate.det, d.metric, d.density, p, q, r, s);
+  }
+  return std::max(static_cast<float>(worth), 1e-30f);
+}
 
 /// A mesh whose every part carries a number: tets, half-faces on walls, edges on lines. Flat arrays.
 struct Parts {
@@ -81,6 +120,7 @@ struct Parts {
   static constexpr std::uint32_t kStays = kNone;
   std::vector<Line> lines;
   bool isotropic = false;  ///< all metrics are those of sizes
+  float poor = 0;          ///< elements of a lower score are mended
 };
 
 /// The tets of a Parts that one worker may change, and those vertices, walls and lines that they have.
@@ -96,6 +136,7 @@ class Piece {
   std::vector<Wall> wall;             ///< per half-face
   std::vector<float> score;           ///< per slot: metric_score()
   bool isotropic = false;             ///< Parts::isotropic
+  float poor = 0;                     ///< Parts::poor
 
   const Tet& tet(TetIndex t) const { return complex.tets[t]; }
   Vec3 point(VertexIndex v) const { return vertices[v].at; }
@@ -109,13 +150,18 @@ class Piece {
 
   double edge_length(VertexIndex a, VertexIndex b) const { return length_between(vertices[a], vertices[b]); }
   double length_between(const Vertex& p, const Vertex& q) const { return adapt::length_between(p, q, isotropic); }
+  bool is_longer(const Vertex& p, const Vertex& q, double length) const {
+    return !squared_bounds(p, q, isotropic).surely_within(length) && length_between(p, q) > length;
+  }
+  bool is_longer(VertexIndex a, VertexIndex b, double length) const {
+    return is_longer(vertices[a], vertices[b], length);
+  }
+  bool is_shorter(const Vertex& p, const Vertex& q, double length) const {
+    return !squared_bounds(p, q, isotropic).surely_beyond(length) && length_between(p, q) < length;
+  }
   /// The score of a tet on these vertices, 0 if it is not positive by exact sign.
-  float score_of(const Tet& t) const { return score_with(t, kNone, Vertex{}); }
-  /// The same with another place and metric of vertex v.
-  float score_with(const Tet& t, VertexIndex v, const Vertex& as) const {
-    std::array<const Vertex*, 4> c;
-    for (int i = 0; i < 4; ++i) c[i] = t[i] == v ? &as : &vertices[t[i]];
-    return score_of_corners(c);
+  float score_of(const Tet& t) const {
+    return score_of_corners({&vertices[t[0]], &vertices[t[1]], &vertices[t[2]], &vertices[t[3]]});
   }
   float score_of_corners(const std::array<const Vertex*, 4>& c) const { return adapt::score_of_corners(c, isotropic); }
 
@@ -165,16 +211,33 @@ class Piece {
   struct Rim {
     HalfFace across = kNone;
     Wall wall = 0;
-    bool open = false;
+  };
+  /// Faces that wait for the other of their two sides: open addressing, emptied by a count of its uses.
+  class OpenFaces {
+   public:
+    /// Room for so many.
+    void reset(std::size_t faces);
+    /// Takes the face out, and says so, or puts it in with this.
+    bool take_or_put(const Triangle& corners, const Rim& put, Rim& taken);
+
+   private:
+    struct Slot {
+      Triangle key;
+      std::uint32_t use = 0;
+      bool waits = false;
+      Rim rim;
+    };
+    std::vector<Slot> slots_;
+    std::uint32_t use_ = 0;
+    int shift_ = 0;
   };
 
   void connect();
-  void toggle(const Triangle& corners, HalfFace across, Wall wall);
   void tie(TetIndex t);
   TetIndex slot();
 
   FlatMap<Edge, std::uint32_t> lines_;
-  FlatMap<Triangle, Rim> rim_;
+  OpenFaces rim_;
   std::vector<TetIndex> created_;
 };
 

@@ -29,6 +29,64 @@ constexpr std::array<double, 3> kStepsOfMending{0.3, 0.1, 0.03};
 /// turn no wall by more (cosine); what is nearer than this part of the tolerance is there.
 constexpr float kLeastOfSettle = 0.05f, kKeptOfSettle = 0.5f;
 constexpr double kLeastTurnOfSettle = 0.5, kThere = 1e-3;
+/// Triangles of walls turn by no more than this (cosine) against the ground, or by no more than they did.
+constexpr double kLeastCosineOfWall = 0.8;
+
+/// Whether triangles of one wall are as true to the ground as is allowed; each place is looked at once.
+class WallCheck {
+ public:
+  WallCheck(const Guide& guide, Wall wall)
+      : ground_(guide.ground),
+        tolerance_(guide.tolerance_of(wall)),
+        part_((wall & ~kOuter) - 1),
+        outer_((wall & kOuter) != 0) {}
+
+  /// Whether some may take the place of others. Edges that stay are as true as they were.
+  bool allows(std::span<const TriangleCorners> before, std::span<const TriangleCorners> after) {
+    before_ = before, knows_before_ = false;
+    farthest_ = tolerance_, least_cosine_ = kLeastCosineOfWall;
+    for (const TriangleCorners& t : before)
+      for (std::size_t i = 0; i < 3; ++i) seen_.push_back(middle(t, i));
+    return std::all_of(after.begin(), after.end(), [&](const TriangleCorners& t) { return is_true(t); });
+  }
+
+ private:
+  static Vec3 middle(const TriangleCorners& t, std::size_t i) { return 0.5 * (t[i] + t[(i + 1) % 3]); }
+  static double longest_edge(const TriangleCorners& t) { return std::sqrt(longest_squared_edge(t[0], t[1], t[2])); }
+
+  bool is_true(const TriangleCorners& t) {
+    const Vec3 normal = double_area_normal(t[0], t[1], t[2]);
+    const double reach = longest_edge(t);
+    const auto truth_at = [&](Vec3 p) { return ground_.truth_at(p, normal, part_, outer_, reach, near_); };
+    if (!is_within(truth_at(centroid(t[0], t[1], t[2])))) return false;
+    for (std::size_t i = 0; i < 3; ++i) {
+      const Vec3 p = middle(t, i);
+      if (std::find(seen_.begin(), seen_.end(), p) != seen_.end()) continue;
+      seen_.push_back(p);
+      if (!is_within({truth_at(p).distance, 1})) return false;
+    }
+    return true;
+  }
+
+  bool is_within(const Ground::Truth& has) {
+    const auto is_fair = [&] { return has.distance <= farthest_ && has.cosine >= least_cosine_; };
+    if (!std::isfinite(has.distance)) return false;
+    if (is_fair() || knows_before_) return is_fair();
+    knows_before_ = true;
+    for (const TriangleCorners& t : before_) {
+      const Ground::Truth had = ground_.truth_of(t, part_, outer_, longest_edge(t));
+      farthest_ = std::max(farthest_, had.distance), least_cosine_ = std::min(least_cosine_, had.cosine);
+    }
+    return is_fair();
+  }
+
+  const Ground& ground_;
+  double tolerance_, farthest_ = 0, least_cosine_ = 1;
+  std::uint32_t part_, near_ = kNone;
+  bool outer_, knows_before_ = false;
+  std::span<const TriangleCorners> before_;
+  std::vector<Vec3> seen_;
+};
 
 class VertexMover {
  public:
@@ -97,11 +155,10 @@ class VertexMover {
     return true;
   }
 
-  /// Of walls on the ground; asks for the metric there.
+  /// Of walls on the ground.
   bool put(Vertex& to, const std::optional<std::uint32_t>& path) {
     if (to.kind != Kind::kInner && !snap(to, path)) return false;
     to.off = false;
-    guide_.ask(to);
     return true;
   }
 
@@ -119,7 +176,10 @@ class VertexMover {
     for (int k = 0; k < kTriesOfMove; ++k, step *= 0.5) {
       Vertex to = from;
       to.at = from.at + step;
-      if (!put(to, path) || !is_better(to, had, lack) || !walls_stay_true(to)) continue;
+      if (!put(to, path)) continue;
+      if (!piece_.isotropic) guide_.ask(to);
+      if (!is_better(to, had, lack) || !walls_stay_true(to)) continue;
+      if (piece_.isotropic) guide_.ask(to);  // a size has no say in scores
       piece_.move(v, to, star_, scores_);
       return true;
     }
@@ -138,6 +198,7 @@ class VertexMover {
         Vertex to = best;
         to.at = best.at + step;
         if (!put(to, path)) continue;
+        guide_.ask(to);
         const float s = worst_with(to, worst);
         if (s > worst && walls_stay_true(to)) best = to, worst = s;
       }
@@ -156,7 +217,7 @@ class VertexMover {
     float worst = HUGE_VALF;
     for (Cell& cell : cells_) {
       cell.corners[cell.at] = &to;
-      worst = std::min(worst, worth_of_corners(cell.corners, piece_.isotropic));
+      worst = std::min(worst, worth_of_corners(cell.corners, piece_));
       if (!(worst > least)) return 0;
     }
     return worst;
@@ -269,6 +330,12 @@ class VertexMover {
     return true;
   }
 
+  /// The unit tensor, which costs nothing.
+  struct RoundMetric {
+    static Vec3 times(Vec3 e) { return e; }
+    static double squared(Vec3 e) { return dot(e, e); }
+    explicit operator Metric() const { return {}; }
+  };
   /// Slope and curvature of the lack as the vertex moves. With S the sum of squared edges and D the six volumes, both
   /// in the metric, 1 / score is S^(3/2) / D times a constant; D is linear.
   struct Slope {
@@ -276,7 +343,9 @@ class VertexMover {
     Vec3 gradient{};
     Metric hessian{0, 0, 0, 0, 0, 0};
 
-    void add(const Metric& m, double density, double wanted, Vec3 x, const std::array<Vec3, 3>& face) {
+    /// `M`: Metric, or RoundMetric.
+    template <class M>
+    void add(const M& m, double density, double wanted, Vec3 x, const std::array<Vec3, 3>& face) {
       const auto& [a, b, c] = face;
       const double sum = m.squared(x - a) + m.squared(x - b) + m.squared(x - c) + m.squared(b - a) + m.squared(c - a) +
                          m.squared(c - b);
@@ -291,7 +360,7 @@ class VertexMover {
       const auto entry = [&](int i, int j) {
         return f * (0.75 * u[i] * u[j] - 1.5 * (u[i] * w[j] + w[i] * u[j])) + ww * w[i] * w[j];
       };
-      hessian = hessian + (9 * f / sum) * m +
+      hessian = hessian + (9 * f / sum) * Metric(m) +
                 Metric{entry(0, 0), entry(0, 1), entry(0, 2), entry(1, 1), entry(1, 2), entry(2, 2)};
     }
   };
@@ -302,7 +371,7 @@ class VertexMover {
       const Triangle f = piece_.complex.face(piece_.complex.opposite(star_[k], v));
       const std::array face{piece_.point(f[0]), piece_.point(f[1]), piece_.point(f[2])};
       if (piece_.isotropic) {
-        slope.add(Metric{}, 1, from.density, from.at, face);
+        slope.add(RoundMetric{}, 1, from.density, from.at, face);
       } else {
         const Vertex& d = densest_of(cells_[k].corners);
         slope.add(d.metric, d.density, 1, from.at, face);
@@ -379,11 +448,16 @@ class VertexMover {
   }
 
   bool walls_stay_true(const Vertex& to) const {
-    if (to.kind == Kind::kInner) return true;
-    for (const WallAt& w : walls_) {
-      const Vec3 b = piece_.point(w.corners[1]), c = piece_.point(w.corners[2]);
-      const std::array<TriangleCorners, 1> before{{{piece_.point(w.corners[0]), b, c}}}, after{{{to.at, b, c}}};
-      if (!keeps_walls_true(guide_, before, after, w.wall)) return false;
+    for (std::size_t k = 0; k < walls_.size() && to.kind != Kind::kInner; ++k) {
+      const Wall wall = walls_[k].wall;
+      const auto is_same = [&](const WallAt& w) { return w.wall == wall; };
+      if (std::any_of(walls_.begin(), walls_.begin() + static_cast<std::ptrdiff_t>(k), is_same)) continue;
+      WallCheck check(guide_, wall);
+      for (const WallAt& w : walls_) {
+        const Vec3 b = piece_.point(w.corners[1]), c = piece_.point(w.corners[2]);
+        const std::array<TriangleCorners, 1> before{{{piece_.point(w.corners[0]), b, c}}}, after{{{to.at, b, c}}};
+        if (is_same(w) && !check.allows(before, after)) return false;
+      }
     }
     return true;
   }
@@ -398,30 +472,11 @@ class VertexMover {
   int steps_ = 0;
 };
 
-/// Triangles of walls turn by no more than this (cosine) against the ground, or by no more than they did.
-constexpr double kLeastCosineOfWall = 0.8;
-
 }  // namespace
 
 bool keeps_walls_true(const Guide& guide, std::span<const TriangleCorners> before,
                       std::span<const TriangleCorners> after, Wall wall) {
-  const std::uint32_t part = (wall & ~kOuter) - 1;
-  const bool outer = (wall & kOuter) != 0;
-  const auto worst_of = [&](std::span<const TriangleCorners> triangles) {
-    Ground::Truth worst;
-    for (const TriangleCorners& t : triangles) {
-      const double edge = std::sqrt(longest_squared_edge(t[0], t[1], t[2]));
-      const Ground::Truth truth = guide.ground.truth_of(t, part, outer, edge);
-      worst = {std::max(worst.distance, truth.distance), std::min(worst.cosine, truth.cosine)};
-    }
-    return worst;
-  };
-  const Ground::Truth has = worst_of(after);
-  const double tolerance = guide.tolerance_of(wall);
-  if (has.distance <= tolerance && has.cosine >= kLeastCosineOfWall) return true;
-  const Ground::Truth had = worst_of(before);
-  return std::isfinite(has.distance) && has.distance <= std::max(tolerance, had.distance) &&
-         has.cosine >= std::min(kLeastCosineOfWall, had.cosine);
+  return WallCheck(guide, wall).allows(before, after);
 }
 
 PassCount settle_on_ground(Piece& piece, const Guide& guide) {

@@ -20,9 +20,6 @@ constexpr float kLeastOfSplit = 0.1f;
 /// What is poor already stays about as good: where the longest edge may not be split, splits of all others would draw
 /// nearer and nearer to it.
 constexpr float kLeastScoreOfSplit = 0.03f, kKeptOfPoor = 0.9f;
-/// A split that makes shorter edges than this waits until the place is connected better: otherwise elements that lie
-/// across the directions of the metric are divided without end.
-constexpr double kShortestOfSplit = 0.55;
 /// Rather than that walls stay off the ground by more than this, in lengths of the metric, they come so near to
 /// vertices, which can go then.
 constexpr double kFarFromHome = 0.1, kShortestAtHome = 0.2;
@@ -43,7 +40,8 @@ constexpr int kCheckEvery = 256;
 
 class Splitter {
  public:
-  Splitter(Piece& piece, const Guide& guide, bool mends) : piece_(piece), guide_(guide), mends_(mends) {}
+  Splitter(Piece& piece, const Guide& guide, bool mends, double shortest)
+      : piece_(piece), guide_(guide), mends_(mends), shortest_(shortest) {}
 
   PassCount run(std::size_t most_vertices) {
     PassCount count;
@@ -148,8 +146,8 @@ class Splitter {
     double limit = kLongest;
     const Tet& c = piece_.tet(t);
     for (const auto& [i, j] : kTetEdges) {
-      const double l = piece_.edge_length(c[i], c[j]);
-      if (l > limit && may_split(c[i], c[j])) limit = l, best = {{c[i], c[j]}, l};
+      if (piece_.is_longer(c[i], c[j], limit) && may_split(c[i], c[j]))
+        limit = piece_.edge_length(c[i], c[j]), best = {{c[i], c[j]}, limit};
     }
     return best;
   }
@@ -221,7 +219,7 @@ class Splitter {
       made.off = guide_.ground.given() && share != 1 && home != straight;
       guide_.ask(made);
       const bool is_needed = share == 1 && made.metric.squared(home - straight) > kFarFromHome * kFarFromHome;
-      if (mends_ ? plan_mending(a, b, made) : plan(a, b, made, is_needed ? kShortestAtHome : kShortestOfSplit))
+      if (mends_ ? plan_mending(a, b, made) : plan(a, b, made, is_needed ? kShortestAtHome : shortest_))
         return apply(a, b, made, path);
     }
     return false;
@@ -238,8 +236,7 @@ class Splitter {
       shortest /= excess * excess;
     }
     for (const VertexIndex r : ring_.ring) {
-      const Vertex& v = piece_.vertices[r];
-      if (piece_.length_between(made, v) < shortest) return false;
+      if (piece_.is_shorter(made, piece_.vertices[r], shortest)) return false;
     }
     return plan_tets(a, b, made, least, [&](const auto&, float score) { return score; });
   }
@@ -249,7 +246,7 @@ class Splitter {
     float worst = HUGE_VALF;
     for (const TetIndex t : ring_.tets) worst = std::min(worst, worth_of(piece_, piece_.tet(t)));
     return plan_tets(a, b, made, kGainOfMending * worst,
-                     [&](const auto& corners, float) { return worth_of_corners(corners, piece_.isotropic); });
+                     [&](const auto& corners, float) { return worth_of_corners(corners, piece_); });
   }
 
   /// The new tets, if all are of more value(corners, score) than `least`.
@@ -276,7 +273,7 @@ class Splitter {
     return std::all_of(ring_.tets.begin(), ring_.tets.end(), [&](TetIndex t) {
       const Tet& c = piece_.tet(t);
       return std::all_of(kTetEdges.begin(), kTetEdges.end(),
-                         [&](const auto& e) { return piece_.edge_length(c[e[0]], c[e[1]]) <= l; });
+                         [&](const auto& e) { return !piece_.is_longer(c[e[0]], c[e[1]], l); });
     });
   }
 
@@ -301,6 +298,7 @@ class Splitter {
   Piece& piece_;
   const Guide& guide_;
   bool mends_;
+  double shortest_;
   std::array<std::vector<TetIndex>, kLevels> waiting_;
   FlatSet<Edge> refused_;
   EdgeRing ring_;
@@ -312,12 +310,12 @@ class Splitter {
 
 }  // namespace
 
-PassCount split_long_edges(Piece& piece, const Guide& guide, std::size_t most_vertices) {
-  return Splitter(piece, guide, false).run(most_vertices);
+PassCount split_long_edges(Piece& piece, const Guide& guide, std::size_t most_vertices, double shortest) {
+  return Splitter(piece, guide, false, shortest).run(most_vertices);
 }
 
 PassCount split_poor(Piece& piece, const Guide& guide) {
-  return Splitter(piece, guide, true).mend();
+  return Splitter(piece, guide, true, 0).mend();
 }
 
 }  // namespace octafront::adapt

@@ -64,11 +64,23 @@ class Swapper {
     gain_ = kLeastGainOfSwap;
     old_.clear();
     const Tet c = piece_.tet(t);
-    for (const auto& [i, j] : kTetEdges) try_edge(t, c[i], c[j]);
+    const unsigned closed = closed_faces(t);
+    for (const auto& [i, j] : kTetEdges)
+      if ((closed & ~(1u << i | 1u << j)) == 0) try_edge(t, c[i], c[j]);
     for (int i = 0; i < 4; ++i) try_face(t, i);
     if (old_.empty()) return false;
     piece_.replace(old_, fresh_, walls_);
     return true;
+  }
+
+  /// A bit for each face of t that no ring it asks for goes through: what lies behind is beyond the rim, or poorer.
+  unsigned closed_faces(TetIndex t) const {
+    unsigned faces = 0;
+    for (HalfFace i = 0; i < 4 && !mends_; ++i) {
+      const HalfFace o = piece_.complex.across[4 * t + i];
+      if (o == kBeyondRim || (!is_outside(o) && piece_.score[o / 4] < piece_.score[t])) faces |= 1u << i;
+    }
+    return faces;
   }
 
   bool are_frozen(VertexIndex a, VertexIndex b) const { return piece_.vertices[a].frozen && piece_.vertices[b].frozen; }
@@ -122,7 +134,7 @@ class Swapper {
     if (other != label || (outer && ring_.tets.size() < 2)) return;
     if (piece_.tet_with(piece_.vertices[p].rim ? q : p, piece_.vertices[p].rim ? p : q, kNone) != kNone) return;
     const double longest = longest_beside(a, b);
-    if (piece_.edge_length(p, q) > longest) return;
+    if (piece_.is_longer(p, q, longest)) return;
     if (!wall_stays_true(a, b, p, q, label)) return;
     // Polygons on the two sides: from p on to q, and from q on to p.
     std::vector<Piece::NewTet> made;
@@ -185,7 +197,7 @@ class Swapper {
           if (sum < std::min(best, most)) best = sum, mid_[i][j] = k;
         }
         const bool is_new = len > 1 && len < n - 1 && best != kImpossible;
-        if (is_new && (are_frozen(poly_[i], poly_[j]) || piece_.edge_length(poly_[i], poly_[j]) > longest))
+        if (is_new && (are_frozen(poly_[i], poly_[j]) || piece_.is_longer(poly_[i], poly_[j], longest)))
           best = kImpossible;
       }
     return best_[0][n - 1];
@@ -227,7 +239,7 @@ class Swapper {
       if (!(lack < had - gain_)) return;
       made[static_cast<std::size_t>(k)] = {c, piece_.region[t], mends_ ? piece_.score_of(c) : s};
     }
-    if (!mends_ && piece_.edge_length(u, w) > kLongestOfSwap) return;
+    if (!mends_ && piece_.is_longer(u, w, kLongestOfSwap)) return;
     gain_ = had - lack;
     old_ = {t, o / 4};
     fresh_.assign(made.begin(), made.end());

@@ -23,6 +23,10 @@ constexpr std::size_t kMostVerticesOfPiece = 8192;
 /// A piece that has grown by so much is divided anew.
 constexpr std::size_t kGrowth = 4, kRoomOfPiece = 4096;
 constexpr int kMostRoundsOfAdapt = 60;
+/// A split that makes shorter edges than this waits until the place is connected better: otherwise elements that lie
+/// across the directions of the metric are divided without end. At first longer ones do, too: most of what comes of
+/// them would be collapsed again.
+constexpr double kShortestOfSplit = 0.55, kShortestAtFirst = 0.65;
 /// Cycles of passes within one piece; on the way.
 constexpr int kCycles = 4, kCyclesOnTheWay = 2;
 /// So many steps at most on the way to a metric, and none more once less than one change for so many elements is made.
@@ -65,6 +69,9 @@ constexpr int kLayersOfMending = 3, kMostRoundsOfMending = 6;
 /// Where more elements are poor than one of so many, no place is to blame but the metric, which changes faster than
 /// elements can follow: mending each of them would take long, and gain little.
 constexpr std::size_t kMostPoor = 4;
+/// Where less than one element of so many has a score below this (a quality of .63), such are mended, too.
+constexpr float kFairOfSize = 0.5f;
+constexpr std::size_t kMostFair = 50;
 /// Rounds once no piece has grown so far that it had to be divided anew: each place is inside a piece several times.
 constexpr int kLastRounds = 2 * kCellStages;
 
@@ -86,18 +93,22 @@ Counts work_on(Piece& piece, const Guide& guide, int cycles) {
   const std::size_t most = kGrowth * piece.vertices.size() + kRoomOfPiece;
   for (int cycle = 0; cycle < cycles; ++cycle) {
     Counts c;
-    c.split = split_long_edges(piece, guide, most);
+    const bool at_first = cycle == 0 && piece.isotropic;
+    c.split = split_long_edges(piece, guide, most, at_first ? kShortestAtFirst : kShortestOfSplit);
     validate(piece);
+    if (!c.split.unfinished) {
+      c.collapse = collapse_short_edges(piece, guide);
+      validate(piece);
+      c.swap = swap_edges(piece, guide, kGoodForSwaps);
+      if (at_first) c.split += split_long_edges(piece, guide, most, kShortestOfSplit);
+    }
     if (c.split.unfinished) {  // it goes on in smaller pieces: what is here is good enough for that
-      c.swap = swap_edges(piece, guide, kGoodOnTheWay);
+      c.swap += swap_edges(piece, guide, kGoodOnTheWay);
       c.move = smooth_vertices(piece, guide, kGoodOnTheWay);
       for (Vertex& v : piece.vertices) v.active = v.loose = true;
       sum += c, sum.grown = true;
       break;
     }
-    c.collapse = collapse_short_edges(piece, guide);
-    validate(piece);
-    c.swap = swap_edges(piece, guide, kGoodForSwaps);
     validate(piece);
     c.move = settle_on_ground(piece, guide);
     c.move += smooth_vertices(piece, guide, kGoodScore);
@@ -152,7 +163,8 @@ class Adapter {
 
   /// What is still poor, each place by itself: what is so long that it was at the rim of all its pieces, too.
   void mend(Counts& sum) {
-    if (is_poor_everywhere()) return;
+    choose_poor();
+    if (count_poor() * kMostPoor > mesh_.tets.size() && !mesh_.isotropic) return;
     mends_ = true;
     for (int k = 0; k < kMostRoundsOfMending; ++k) {
       const Cells places = poor_places(k > 0);
@@ -164,13 +176,18 @@ class Adapter {
     mends_ = false;
   }
 
-  bool is_poor_everywhere() const {
-    const std::size_t poor = parallel_sum(mesh_.tets.size(), [&](std::size_t begin, std::size_t end) {
+  /// Where few elements are less than good those are mended, too.
+  void choose_poor() {
+    mesh_.poor = mesh_.isotropic ? kFairOfSize : kPoorInMetric;
+    if (mesh_.isotropic && count_poor() * kMostFair > mesh_.tets.size()) mesh_.poor = kPoorOfSize;
+  }
+
+  std::size_t count_poor() const {
+    return parallel_sum(mesh_.tets.size(), [&](std::size_t begin, std::size_t end) {
       std::size_t count = 0;
-      for (std::size_t t = begin; t < end; ++t) count += worth_of(mesh_, mesh_.tets[t]) < 1;
+      for (std::size_t t = begin; t < end; ++t) count += is_poor(mesh_, mesh_.tets[t]);
       return count;
     });
-    return poor * kMostPoor > mesh_.tets.size() && !mesh_.isotropic;
   }
 
   /// A cell for each lot of poor elements and some layers around, numbered by their least vertices; other vertices are
@@ -338,9 +355,12 @@ class Adapter {
 
   Counts merge(std::vector<Done>& done, std::span<const TetIndex> left, std::span<const Parts::Line> left_lines) {
     Parts next;
-    next.isotropic = mesh_.isotropic;
+    next.isotropic = mesh_.isotropic, next.poor = mesh_.poor;
     Counts sum;
     next.vertices = std::move(mesh_.vertices);
+    std::size_t tets = left.size();
+    for (const Done& d : done) tets += d.tets.size();
+    next.tets.reserve(tets), next.region.reserve(tets), next.wall.reserve(tets);
     std::vector<VertexIndex> first_fresh;
     for (const Done& d : done) {
       for (const auto& [v, vertex] : d.changed) next.vertices[v] = vertex;

@@ -1,5 +1,6 @@
 #include "adapt/schedule/metric_steps.h"
 
+#include "base/core/elementary.h"
 #include "base/core/groups.h"
 #include "base/core/parallel.h"
 #include "base/geometry/measures.h"
@@ -28,10 +29,12 @@ class ImpliedMetrics {
   explicit ImpliedMetrics(const Parts& mesh) : logs_(mesh.tets.size()), speaks_(mesh.tets.size()) {
     parallel_for(logs_.size(), [&](std::size_t t) {
       const auto point = [&](int i) { return mesh.vertices[mesh.tets[t][i]].at; };
-      const Eigen implied = eigen(implied_metric(point(0), point(1), point(2), point(3)));
+      Eigen implied = eigen(implied_metric(point(0), point(1), point(2), point(3)));
       const auto [least, most] = std::minmax_element(implied.value.begin(), implied.value.end());
       speaks_[t] = *least > 0 && *most < kMostRatioOfMetric * *least;
-      if (speaks_[t]) logs_[t] = log_of(implied.tensor());
+      if (!speaks_[t]) return;
+      for (double& value : implied.value) value = elementary::log(value);
+      logs_[t] = implied.tensor();
     });
   }
 
@@ -103,9 +106,12 @@ class HighArcs {
       return home ? *home - p : Vec3{};
     };
     std::uint32_t hint = mesh_.vertices[e.ends[0]].hint;
-    const Metric metric = guide_.metric.at(middle, hint);
+    const auto wanted_at = [&](VertexIndex v) {
+      return mesh_.vertices[v].exact ? mesh_.vertices[v].metric : guide_.metric.at(at(v), hint);
+    };
     // Divided for the height alone it would be collapsed again.
-    if (metric_length(b - a, guide_.metric.at(a, hint), guide_.metric.at(b, hint)) <= kLongest) return false;
+    if (metric_length(b - a, wanted_at(e.ends[0]), wanted_at(e.ends[1])) <= kLongest) return false;
+    const Metric metric = guide_.metric.at(middle, hint);
     const auto is_long = [&](Vec3 d) { return metric.squared(d) > kMostHeightOfArc * kMostHeightOfArc; };
     const Vec3 height = offset(middle);
     // Where its ends could not come to the ground its halves could not either.
@@ -140,21 +146,26 @@ std::size_t take_step(Parts& mesh, const Guide& guide, bool last, bool walls_ahe
   const ImpliedMetrics implied(mesh);
   const Groups<> corners = group_by_owner(vertices, static_cast<std::uint32_t>(4 * mesh.tets.size()),
                                           [&](std::uint32_t c) { return mesh.tets[c / 4][c % 4]; });
+  std::vector<Metric> had(vertices);
   parallel_for(vertices, [&](std::size_t v) {
     Vertex& vertex = mesh.vertices[v];
-    vertex.exact = true, vertex.active = vertex.loose = true, vertex.calmness = Vertex::kStirred;
+    had[v] = vertex.metric, vertex.exact = true;
     guide.ask(vertex);
     Metric is;
     if (last || !implied.mean(corners[v], is)) return;
     vertex.metric = step_towards(is, vertex.metric, kStepOfMetric, vertex.exact);
     vertex.density = density_of(vertex.metric);
   });
-  if (last) return 0;
-  if (walls_ahead) {
+  if (!last && walls_ahead) {
     const HighArcs arcs(mesh, guide);
     for (const Edge& e : arcs.found())
       for (const VertexIndex v : e)
         ask_along(mesh.vertices[v], mesh.vertices[e[1]].at - mesh.vertices[e[0]].at, kLengthOfChord);
+  }
+  for (VertexIndex v = 0; v < vertices; ++v) {
+    Vertex& vertex = mesh.vertices[v];
+    if (vertex.metric == had[v]) continue;
+    vertex.active = vertex.loose = true, vertex.calmness = Vertex::kStirred;
   }
   const auto is_on_the_way = [](const Vertex& v) { return !v.exact; };
   return static_cast<std::size_t>(std::count_if(mesh.vertices.begin(), mesh.vertices.end(), is_on_the_way));

@@ -28,8 +28,14 @@ double distance_to(const TriangleCorners& t, Vec3 p) {
   return distance(p, closest_point_on_triangle(p, t[0], t[1], t[2]));
 }
 
-Sample vertex_sample(const TriangleTree& to, Vec3 p) {
-  const auto nearest = to.nearest(p);
+// `near`: a triangle that may be near, which makes the search short and changes no result; kNone: none is known.
+Sample vertex_sample(const TriangleTree& to, Vec3 p, std::uint32_t near) {
+  double limit = TriangleTree::kFar;
+  if (near != kNone) {
+    const auto& [a, b, c] = to.corners(near);
+    limit = std::nextafter(squared_distance(p, closest_point_on_triangle(p, a, b, c)), limit);
+  }
+  const auto nearest = to.nearest(p, limit);
   return {p, std::sqrt(nearest.squared_distance), nearest.triangle};
 }
 
@@ -44,19 +50,27 @@ class Division {
 
   HausdorffBounds bounds;
 
-  void add(const Piece& whole) {
-    stack_.assign(1, whole);
+  // The upper bound of a piece that has to be divided; 0 of others.
+  double look_at(const Piece& piece) {
+    double upper = upper_bound(piece);
+    // Corners may have chosen triangles around the one that runs along with this piece.
+    if (upper > bounds.lower + tolerance_) upper = std::min(upper, farthest_corner(piece, middle_sample(piece)));
+    if (upper > bounds.lower + tolerance_ && longest_edge(piece) > tolerance_) return upper;
+    bounds.upper = std::max(bounds.upper, upper);
+    return 0;
+  }
+
+  // `upper`: of look_at().
+  void add(const Piece& whole, double upper) {
+    if (upper <= bounds.lower + tolerance_) {
+      bounds.upper = std::max(bounds.upper, upper);
+      return;
+    }
+    divide(whole);
     while (!stack_.empty()) {
       const Piece piece = stack_.back();
       stack_.pop_back();
-      double upper = upper_bound(piece);
-      // Corners may have chosen triangles around the one that runs along with this piece.
-      if (upper > bounds.lower + tolerance_) upper = std::min(upper, farthest_corner(piece, middle_sample(piece)));
-      if (upper <= bounds.lower + tolerance_ || longest_edge(piece) <= tolerance_) {
-        bounds.upper = std::max(bounds.upper, upper);
-      } else {
-        divide(piece);
-      }
+      if (look_at(piece) > 0) divide(piece);
     }
   }
 
@@ -84,14 +98,17 @@ class Division {
     return farthest;
   }
 
+  // Or something above it that changes nothing any more.
   double upper_bound(const Piece& piece) const {
+    const double enough = std::min(bounds.upper, bounds.lower + tolerance_);
     double upper = TriangleTree::kFar;
     for (const Sample& s : piece) {
       double reach = 0;
       for (const Sample& other : piece) reach = std::max(reach, distance(s.at, other.at));
       // The distance to all triangles grows by at most 1 per unit of length.
-      upper = std::min({upper, s.distance + reach, farthest_corner(piece, s)});
+      upper = std::min(upper, s.distance + reach);
     }
+    for (std::size_t i = 0; i < 3 && upper > enough; ++i) upper = std::min(upper, farthest_corner(piece, piece[i]));
     return upper;
   }
 
@@ -128,25 +145,36 @@ HausdorffBounds one_sided_hausdorff(const SurfaceMesh& from, const TriangleTree&
   }
   std::vector<Sample> vertices(from.points.size());
   for_each_block(vertices.size(), [&](std::size_t, std::size_t begin, std::size_t end) {
-    for (std::size_t v = begin; v < end; ++v) vertices[v] = vertex_sample(to, from.points[v]);
+    for (std::size_t v = begin; v < end; ++v)
+      vertices[v] = vertex_sample(to, from.points[v], v == begin ? kNone : vertices[v - 1].triangle);
   });
   for (const Triangle& t : from.triangles)
     for (const VertexIndex v : t)
       if (vertices[v].distance > result.lower) result.lower = vertices[v].distance, result.place = vertices[v].at;
-  std::vector<HausdorffBounds> parts((from.triangles.size() + kBlock - 1) / kBlock);
-  for_each_block(from.triangles.size(), [&](std::size_t block, std::size_t begin, std::size_t end) {
-    Division division(to, tolerance, result);
-    for (std::size_t t = begin; t < end; ++t) {
-      const auto& [a, b, c] = from.triangles[t];
-      division.add({vertices[a], vertices[b], vertices[c]});
-    }
-    parts[block] = division.bounds;
-  });
+  const auto piece = [&](std::size_t t) {
+    const auto& [a, b, c] = from.triangles[t];
+    return Piece{vertices[a], vertices[b], vertices[c]};
+  };
   result.samples = vertices.size();
-  for (const HausdorffBounds& part : parts) {
-    result.samples += part.samples;
-    result.upper = std::max(result.upper, part.upper);
-    if (part.lower > result.lower) result.lower = part.lower, result.place = part.place;
+  // All are looked at before any is divided: the greatest distance met in their middles spares most of that.
+  std::vector<double> upper(from.triangles.size());
+  for (const bool divides : {false, true}) {
+    std::vector<HausdorffBounds> parts((from.triangles.size() + kBlock - 1) / kBlock);
+    for_each_block(from.triangles.size(), [&](std::size_t block, std::size_t begin, std::size_t end) {
+      Division division(to, tolerance, result);
+      for (std::size_t t = begin; t < end; ++t) {
+        if (!divides)
+          upper[t] = division.look_at(piece(t));
+        else if (upper[t] > 0)
+          division.add(piece(t), upper[t]);
+      }
+      parts[block] = division.bounds;
+    });
+    for (const HausdorffBounds& part : parts) {
+      result.samples += part.samples;
+      result.upper = std::max(result.upper, part.upper);
+      if (part.lower > result.lower) result.lower = part.lower, result.place = part.place;
+    }
   }
   return result;
 }

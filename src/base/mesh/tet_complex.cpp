@@ -224,10 +224,11 @@ const std::vector<TetIndex>& TetComplex::star_from(VertexIndex v, TetIndex start
   star_.assign(1, start);
   marks[start] = seen;
   for (std::size_t k = 0; k < star_.size(); ++k) {
-    const TetIndex t = star_[k];
-    for (HalfFace h = 4 * t; h < 4 * t + 4; ++h) {
-      const HalfFace o = across[h];
-      if (apex(h) == v || is_outside(o) || marks[o / 4] == seen) continue;
+    const Tet& corners = tets[star_[k]];
+    const HalfFace* beside = across.data() + 4 * std::size_t{star_[k]};
+    for (std::size_t i = 0; i < 4; ++i) {
+      const HalfFace o = beside[i];
+      if (corners[i] == v || is_outside(o) || marks[o / 4] == seen) continue;
       marks[o / 4] = seen;
       star_.push_back(o / 4);
     }

@@ -157,7 +157,7 @@ std::vector<Row<IntakeOptions>> image_rows() {
                        "Where labels touch in spots below this area, or in strips of a voxel or two, a label beside "
                        "them comes between; keep: they stay")
               .takes("A|keep")
-              .without("the square of the size, or of that which `elements` come to")
+              .without("the square of the size, if one is given")
               .also("check"),
           [](auto& o) -> auto& { return o.image.contacts; }),
       intake_row(

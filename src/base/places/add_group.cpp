@@ -1,6 +1,9 @@
 #include <octafront/error.h>
 #include <octafront/named_groups.h>
+#include <octafront/surface_mesh.h>
 
+#include "base/mesh/complex.h"
+#include "base/mesh/complex_patches.h"
 #include "base/places/places.h"
 
 #include <algorithm>
@@ -35,21 +38,28 @@ bool add_in_space(TetMesh& mesh, const GroupRule& rule, const Place& place) {
   }
 }
 
-/// All that places with names have, whatever it is. Those that the mesh has not are said in `unknown`.
-bool add_named(TetMesh& mesh, const std::string& name, const std::vector<Place>& places, std::string& unknown) {
-  MeshItems all;
-  for (const Place& place : places) try {
-      const MeshItems items = items_at(mesh, "group", place);
-      const auto add = [](auto& to, const auto& from) { to.insert(to.end(), from.begin(), from.end()); };
-      add(all.nodes, items.nodes), add(all.edges, items.edges), add(all.faces, items.faces), add(all.tets, items.tets);
-    } catch (const OptionError& error) {
-      const std::string text = error.what();  // "`group`: there is no ..."
-      unknown += (unknown.empty() ? "" : "; ") + text.substr(text.find(": ") + 2);
-    }
+bool add_all(TetMesh& mesh, const std::string& name, MeshItems all) {
   bool added = add_set(mesh, name, Kind::kNodes, std::move(all.nodes));
   added |= add_set(mesh, name, Kind::kEdges, std::move(all.edges));
   added |= add_set(mesh, name, Kind::kFaces, std::move(all.faces));
   return add_set(mesh, name, Kind::kElements, std::move(all.tets)) || added;
+}
+
+/// All that is called so, whatever it is. What the mesh has not is said in `unknown`.
+bool add_named(TetMesh& mesh, const std::string& name, const Place& place, std::string& unknown) {
+  try {
+    return add_all(mesh, name, items_at(mesh, "group", place));
+  } catch (const OptionError& error) {
+    const std::string text = error.what();  // "`group`: there is no ..."
+    unknown = text.substr(text.find(": ") + 2);
+    return false;
+  }
+}
+
+/// What a division by angle or split_patches() calls a patch.
+bool is_made_later(const std::string& name) {
+  const bool is_number = name.find_first_not_of("0123456789") == std::string::npos;
+  return is_number || name.starts_with("patch_") || name.ends_with("_plus") || name.ends_with("_minus");
 }
 
 }  // namespace
@@ -88,6 +98,21 @@ GroupRule group_rule(const std::string& text) {
   return rule;
 }
 
+void check_group(const SurfaceMesh& surface, const GroupRule& rule) {
+  const auto* wanted = std::get_if<std::vector<std::string>>(&rule.where);
+  if (wanted == nullptr) return;
+  SurfaceMesh divided = surface;
+  if (is_complex(divided)) divide_by_sides(divided);
+  std::vector<char> is_there(1);
+  for (std::uint32_t t = 0; t < divided.triangles.size(); ++t) {
+    const std::uint32_t patch = divided.patch_of(t);
+    is_there.resize(std::max<std::size_t>(is_there.size(), patch + 1));
+    is_there[patch] = 1;
+  }
+  for (const std::string& name : *wanted)
+    if (!is_made_later(name)) patches_called("group", divided.patch_names, is_there, name);
+}
+
 std::string add_group(TetMesh& mesh, const GroupRule& rule) {
   std::string unknown;
   bool added = false;
@@ -96,14 +121,10 @@ std::string add_group(TetMesh& mesh, const GroupRule& rule) {
   else if (const auto* ball = std::get_if<GroupRule::Sphere>(&rule.where))
     added = add_in_space(mesh, rule, {"", *ball});
   else if (const auto* name = std::get_if<std::string>(&rule.where))
-    added = add_named(mesh, rule.name, {{*name, *name}}, unknown);
-  else {
-    std::vector<Place> places;
-    for (const std::string& patch : std::get<std::vector<std::string>>(rule.where))
-      places.push_back({patch, std::vector{patch}});
-    added = add_named(mesh, rule.name, places, unknown);
-  }
-  if (!unknown.empty()) return fmt::format("group \"{}\": {}{}", rule.name, unknown, added ? "" : "; it is left out");
+    added = add_named(mesh, rule.name, {*name, *name}, unknown);
+  else
+    added = add_all(mesh, rule.name, items_at(mesh, "group", {"", std::get<std::vector<std::string>>(rule.where)}));
+  if (!unknown.empty()) return fmt::format("group \"{}\": {}; it is left out", rule.name, unknown);
   return added ? std::string() : fmt::format("group \"{}\": nothing lies there; it is left out", rule.name);
 }
 

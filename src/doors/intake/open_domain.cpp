@@ -29,10 +29,7 @@ IntakeOptions intake_for(const Options& options, IntakeOptions intake) {
     cad.elements = options.size.elements;
     if (!cad.elements) cad.size = options.size.size;
   }
-  if (intake.image.contacts.empty() && !intake.image.size && !intake.image.elements) {
-    intake.image.size = options.size.size;
-    intake.image.elements = options.size.elements;
-  }
+  if (!intake.image.size) intake.image.size = options.size.size;
   for (const NamedSize& named : options.size.named) cad.apart.push_back(named.name);
   for (const NearSize& near : options.size.near)
     if (!near.name.empty()) cad.apart.push_back(near.name);

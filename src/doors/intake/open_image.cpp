@@ -3,12 +3,14 @@
 #include <octafront/image_surface.h>
 
 #include "base/core/doubles.h"
-#include "base/core/elementary.h"
+#include "base/core/wording.h"
 #include "doors/intake/cell.h"
 #include "doors/intake/coarser_voxels.h"
 #include "doors/intake/intake.h"
 
 #include <algorithm>
+#include <array>
+#include <bit>
 #include <cmath>
 #include <utility>
 
@@ -68,16 +70,59 @@ ImageRegions regions_of(const ImageIntake& asked, const RunContext& context) {
   return regions;
 }
 
-/// The edge length that elements of the labels will have; 0: not known.
-double size_to_come(const Image& image, const ImageRegions& regions, const ImageIntake& asked) {
-  if (asked.size || !asked.elements) return asked.size.value_or(0);
-  const LabelImage labels = labels_of(image, regions.labels);
-  const auto voxels = static_cast<double>(std::ranges::count_if(
-      labels.regions, [](std::uint16_t region) { return region != LabelImage::kNoRegion; }));
-  const auto& [a, b, c] = image.grid.axes;
-  constexpr double kTetsPerCube = 9.24;  // of the edge length
-  return elementary::cbrt(kTetsPerCube * voxels * std::abs(dot(cross(a, b), c)) /
-                          static_cast<double>(*asked.elements));
+/// The first and the last face of the box of voxels along an axis, in index space.
+std::array<double, 2> ends_of_box(const ImageGrid& grid, int axis) {
+  const std::uint32_t n = grid.size[static_cast<std::size_t>(axis)];
+  const auto middle = [&](std::uint32_t i) { return axis == 2 ? grid.slice(i) : i; };
+  const double first = n > 1 ? middle(1) - middle(0) : 1, last = n > 1 ? middle(n - 1) - middle(n - 2) : 1;
+  return {middle(0) - first / 2, middle(n - 1) + last / 2};
+}
+
+/// Where a region was cut flat by the edge of the image is a patch of its own: box_i0 and box_i1 at the ends of i, ...
+void name_faces_of_box(SurfaceMesh& surface, const ImageGrid& grid) {
+  constexpr double kRounding = 1e-6;  // of a voxel: vertices of these faces lie in them but for rounding
+  constexpr std::array kNames{"box_i0", "box_i1", "box_j0", "box_j1", "box_k0", "box_k1"};
+  std::vector<std::uint8_t> on(surface.points.size(), 0);  // a bit for each face of the box
+  for (int axis = 0; axis < 3; ++axis) {
+    const std::array<double, 2> ends = ends_of_box(grid, axis);
+    for (std::size_t v = 0; v < on.size(); ++v)
+      for (int end = 0; end < 2; ++end)
+        if (std::abs(grid.to_index(surface.points[v])[axis] - ends[static_cast<std::size_t>(end)]) < kRounding)
+          on[v] |= static_cast<std::uint8_t>(1 << (2 * axis + end));
+  }
+  std::vector<std::uint32_t> patch(surface.triangles.size(), 0);
+  std::array<std::uint32_t, 6> number{};
+  std::vector<std::string> names{surface.region_names.size() == 1 ? surface.region_names[0] : ""};
+  for (std::size_t t = 0; t < surface.triangles.size(); ++t) {
+    const auto& [a, b, c] = surface.triangles[t];
+    const unsigned shared = on[a] & on[b] & on[c];
+    if (shared == 0 || surface.sides[t][0] != kNone) continue;
+    const auto face = static_cast<std::size_t>(std::countr_zero(shared));
+    if (number[face] == 0) {
+      number[face] = static_cast<std::uint32_t>(names.size());
+      names.emplace_back(kNames[face]);
+    }
+    patch[t] = number[face];
+  }
+  if (names.size() == 1) return;
+  surface.patch = std::move(patch);
+  surface.patch_names = std::move(names);
+}
+
+/// Said to be labels, and not whole: programs that resample or average leave such.
+std::optional<Image> with_whole_labels(const Image& image) {
+  const auto* values = std::get_if<std::vector<float>>(&image.values);
+  if (values == nullptr) return std::nullopt;
+  Image made{image.grid, *values, {}, image.format, image.unit, image.frame, image.names};
+  std::size_t changed = 0;
+  for (float& v : std::get<std::vector<float>>(made.values)) {
+    const float whole = std::round(v);
+    changed += v != whole;
+    v = whole;
+  }
+  if (changed == 0) return std::nullopt;
+  made.notes.push_back(fmt::format("labels are whole numbers: {} rounded", counted(changed, "voxel is", "voxels are")));
+  return made;
 }
 
 double area_of_contacts(const Image& image, const ImageRegions& regions, const ImageIntake& asked) {
@@ -90,7 +135,7 @@ double area_of_contacts(const Image& image, const ImageRegions& regions, const I
     return area;
   }
   if (kind_of(image, regions) != ImageRegions::Kind::kLabels) return 0;
-  const double size = size_to_come(image, regions, asked);
+  const double size = asked.size.value_or(0);
   return size * size;
 }
 
@@ -113,6 +158,7 @@ void refuse_image_options(const ImageIntake& image, const std::string& name) {
                                                 {!image.names_file.empty() || !labels.names.empty(), "labels"},
                                                 {labels.ignore.has_value(), "ignore"},
                                                 {!labels.merge.empty(), "merge"},
+                                                {!image.regions.electrodes.empty(), "electrode"},
                                                 {clean.islands > 0, "islands"},
                                                 {clean.holes > 0, "holes"},
                                                 {clean.closing > 0, "close_voxels"},
@@ -129,10 +175,15 @@ void take_image(Domain& domain, const IntakeOptions& options, const Image& image
   check_cleaning(options.image.regions.clean);
   note_all(domain, options, "reading", image.notes);
   ImageRegions regions = regions_of(options.image, context);
-  const std::optional<Image> part = taken(domain, options, image, regions, context);
-  const Image& used = part ? *part : image;
+  const std::optional<Image> whole =
+      regions.kind == ImageRegions::Kind::kLabels ? with_whole_labels(image) : std::nullopt;
+  if (whole) note_all(domain, options, "reading", whole->notes);
+  const Image& given = whole ? *whole : image;
+  const std::optional<Image> part = taken(domain, options, given, regions, context);
+  const Image& used = part ? *part : given;
   if (regions.clean.contacts == 0) regions.clean.contacts = area_of_contacts(used, regions, options.image);
   domain.format = image.format;
+  domain.frame = image.frame;
   domain.voxel_spacing = smallest_spacing(used.grid);
   domain.voxels = used.grid.size;
   try {
@@ -142,6 +193,7 @@ void take_image(Domain& domain, const IntakeOptions& options, const Image& image
                  repeats ? complex_of_periodic_image(used, regions, repeated, context)
                          : complex_of_image(used, regions, context));
     if (repeats) return;
+    name_faces_of_box(domain.surface, used.grid);
     domain.found_clean = fingerprint(domain.surface);
   } catch (const InputError& error) {
     throw InputError(name.empty() ? error.what() : fmt::format("{}: {}", name, error.what()));

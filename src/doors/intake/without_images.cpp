@@ -2,6 +2,7 @@
 
 #include <octafront/error.h>
 #include <octafront/image.h>
+#include <octafront/image_samples.h>
 #include <octafront/image_surface.h>
 
 #include "images/labels/thinness.h"
@@ -78,6 +79,12 @@ std::string in_words(const ImageGrid&) {
   refuse();
 }
 double smallest_spacing(const ImageGrid&) {
+  refuse();
+}
+Image in_frame(Image, const std::string&) {
+  refuse();
+}
+ImageSamples sample_image(const TetMesh&, const Image&, const std::string&, const RunContext&) {
   refuse();
 }
 image::Thinness image::thinness_of(const LabelImage&) {

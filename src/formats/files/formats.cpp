@@ -105,8 +105,8 @@ constexpr Format with_surfaces_alone(Format format) {
   format.info.holds.surfaces_alone = true;
   return format;
 }
-constexpr Format with_fields(Format format) {
-  format.info.holds.surfaces_alone = format.write_mesh != nullptr;  // parts are of volumes
+constexpr Format with_fields(Format format, bool surfaces_alone = true) {
+  format.info.holds.surfaces_alone = surfaces_alone && format.write_mesh != nullptr;  // parts are of volumes
   format.info.holds.fields = true;
   return format;
 }
@@ -139,6 +139,7 @@ constexpr Format of_several_files(Format format) {
   format.info.one_file = false;
   return format;
 }
+constexpr FormatHolds kTissues{.regions = Keeps::kNumbers, .interfaces = true};
 constexpr FormatHolds kSu2{.patches = Keeps::kNames};
 constexpr FormatHolds kOpenFoam{.regions = Keeps::kNames, .patches = Keeps::kNames, .interfaces = true};
 
@@ -177,6 +178,9 @@ constexpr std::array kFormats{
              with_wedges(or_text(mesh("msh22", "Gmsh MSH 2.2", "", binary(without_sets(kAll)),
                                       "binary or text: regions, patches, curves as physical groups", write_msh2)))),
          nullptr, read_msh),
+    with_fields(or_text(mesh("simnibs", "SimNIBS (MSH 2.2)", "", binary(kTissues),
+                             "labels as tags of tetrahedra, 1000 more of triangles; binary or text", write_simnibs)),
+                false),
     read(with_cohesive(with_wedges(mesh("abaqus", "Abaqus, CalculiX", ".inp", kSolver,
                                         "ELSET, NSET, SURFACE; numbers of at most 20 characters", write_abaqus))),
          told_abaqus, read_abaqus),
@@ -187,8 +191,9 @@ constexpr std::array kFormats{
          told_unv, read_unv),
     read(with_wedges(mesh("med", "MED 4", ".med", binary(kAll), "families and groups; needs HDF5", kWriteMed)),
          told_hdf5, kReadMed),
-    read(with_wedges(of_several_files(
-             mesh("xdmf", "XDMF", ".xdmf", binary(kAll), "with values in files .h5 beside; needs HDF5", kWriteXdmf))),
+    read(with_fields(with_wedges(of_several_files(mesh("xdmf", "XDMF", ".xdmf", binary(kAll),
+                                                       "with values in files .h5 beside; needs HDF5", kWriteXdmf))),
+                     false),
          told_xdmf, kReadXdmf),
     with_wedges(mesh("exodus", "Exodus II", ".exo .e .ex2", binary(kSolver), "blocks, node, side and element sets",
                      write_exodus)),

@@ -96,6 +96,14 @@ void require_fitting(const std::string& file, const TetMesh& mesh, std::span<con
   }
 }
 
+/// Those of points that keep their numbers, and of elements that are not divided as parts of wedges.
+std::vector<MeshField> fields_that_fit(std::span<const MeshField> fields, bool points_move, bool wedges_in_parts) {
+  std::vector<MeshField> fitting;
+  for (const MeshField& field : fields)
+    if (field.of_elements ? !wedges_in_parts : !points_move) fitting.push_back(field);
+  return fitting;
+}
+
 /// Of a format of surfaces only.
 SurfaceMesh boundary_surface(const TetMesh& mesh) {
   SurfaceMesh surface;
@@ -150,9 +158,18 @@ std::vector<std::string> write_mesh(const std::string& file, const TetMesh& mesh
                                                                   .last_points = without.diagonals});
   if (in_parts(format, options) && mesh.tets.empty())
     throw OptionError(fmt::format("{}: a mesh without volume elements is not written in parts", file));
+  const bool wedges_in_parts = in_parts(format, options) && !parts.wide_cells().empty();
+  const std::size_t given = fields.size();
+  std::vector<MeshField> fitting;
+  if (without.mesh || wedges_in_parts) {
+    fitting = fields_that_fit(fields, without.mesh.has_value(), wedges_in_parts);
+    fields = fitting;
+  }
   io::MeshOutput out(file, context, options, fields);
+  if (fields.size() < given)
+    out.note("wedges of second order, or in parts, are written without the fields that do not fit them");
   if (!fields.empty() && !holds.fields)
-    out.note(fmt::format("{} is written without the fields: VTU, VTK and MSH hold them", format.info.title));
+    out.note(fmt::format("{} is written without the fields: VTU, VTK, MSH and XDMF hold them", format.info.title));
   if (format.write_surface != nullptr) {
     format.write_surface(out.file(), boundary_surface(mesh));
     if (!mesh.tets.empty())

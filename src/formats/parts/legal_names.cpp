@@ -29,7 +29,7 @@ std::string LegalNames::key(std::string_view name) const {
   return all;
 }
 
-std::string LegalNames::legal(std::string_view name) {
+std::string LegalNames::fit(std::string_view name) const {
   std::string made;
   for (const char c : name.substr(0, rules_.longest)) {
     const bool good = is_letter(c) || is_digit(c) || rules_.also.find(c) != std::string_view::npos;
@@ -38,11 +38,20 @@ std::string LegalNames::legal(std::string_view name) {
   if (made.empty() || (rules_.letter_first && !is_letter(made[0])))
     made.insert(made.begin(), rules_.upper_case ? 'N' : 'n');
   made.resize(std::min(made.size(), rules_.longest));
-  const std::string base = made;
-  for (int n = 2; !taken_.insert(key(made)).second; ++n) {
-    const std::string number = fmt::format("_{}", n);
-    made = base.substr(0, rules_.longest - number.size()) + number;
-  }
+  return made;
+}
+
+std::string LegalNames::with_ending(const std::string& base, std::string_view ending) const {
+  return base.substr(0, rules_.longest - ending.size()).append(ending);
+}
+
+std::string LegalNames::legal(std::string_view name, const LegalNames* apart) {
+  const auto is_taken = [&](const std::string& made) { return has(made) || (apart && apart->has(made)); };
+  std::string base = fit(name);
+  if (apart && apart->has(base)) base = with_ending(base, "_surface");
+  std::string made = base;
+  for (int n = 2; is_taken(made); ++n) made = with_ending(base, fmt::format("_{}", n));
+  taken_.insert(key(made));
   // That all is in upper case is no news.
   if (key(made) != key(name)) changed_.push_back(fmt::format("\"{}\" is {}", one_line(name), made));
   return made;
@@ -59,12 +68,15 @@ std::string LegalNames::note() const {
 std::vector<std::string> legal_names(MeshOutput& out, const MeshParts& mesh, const NameRules& rules,
                                      std::span<const Part::Origin> of) {
   LegalNames of_elements(rules), of_others(rules);
-  std::vector<std::string> names;
-  for (const Part& part : mesh.parts()) {
-    const bool is_wanted = std::find(of.begin(), of.end(), part.origin) != of.end();
-    LegalNames& legal = part.kind == NamedSet::Kind::kElements ? of_elements : of_others;
-    names.push_back(is_wanted ? legal.legal(part.name) : std::string());
-  }
+  std::vector<std::string> names(mesh.parts().size());
+  for (const bool elements : {true, false})
+    for (std::size_t p = 0; p < names.size(); ++p) {
+      const Part& part = mesh.parts()[p];
+      const bool is_wanted = std::find(of.begin(), of.end(), part.origin) != of.end();
+      if (!is_wanted || (part.kind == NamedSet::Kind::kElements) != elements) continue;
+      const bool is_apart = rules.one_space && part.kind == NamedSet::Kind::kFaces;
+      names[p] = (elements ? of_elements : of_others).legal(part.name, is_apart ? &of_elements : nullptr);
+    }
   out.note(of_elements.note());
   out.note(of_others.note());
   return names;

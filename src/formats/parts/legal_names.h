@@ -19,6 +19,7 @@ struct NameRules {
   bool letter_first = true;
   bool upper_case = false;   ///< written in upper case
   bool ignores_case = true;  ///< two names must differ by more than case
+  bool one_space = false;    ///< of faces and elements together: CalculiX mixes up a surface and a set of elements
 };
 
 /// Names that a format takes, each once, and a note where one had to change.
@@ -26,12 +27,15 @@ class LegalNames {
  public:
   explicit LegalNames(NameRules rules) : rules_(rules) {}
 
-  /// The legal name of a part; made unique by a number behind it.
-  std::string legal(std::string_view name);
+  /// The legal name of a part; made unique by a number behind it, where `apart` has it by "_surface".
+  std::string legal(std::string_view name, const LegalNames* apart = nullptr);
   /// "names were made legal for the format: ..."; empty if all are as they were.
   std::string note() const;
 
  private:
+  std::string fit(std::string_view name) const;
+  std::string with_ending(const std::string& base, std::string_view ending) const;
+  bool has(std::string_view name) const { return taken_.contains(key(name)); }
   std::string key(std::string_view name) const;
 
   NameRules rules_;
@@ -45,7 +49,8 @@ inline constexpr std::array kAllOrigins{Part::Origin::kRegion, Part::Origin::kPa
                                         Part::Origin::kSet};
 
 /// A legal name for each part of the mesh that is of these origins (others have none); sets of elements, and all
-/// others, each have a space of names of their own. What had to change is noted.
+/// others, each have a space of names of their own. In `one_space` faces called after elements are NAME_surface. What
+/// had to change is noted.
 std::vector<std::string> legal_names(MeshOutput& out, const MeshParts& mesh, const NameRules& rules,
                                      std::span<const Part::Origin> of = kAllOrigins);
 

@@ -29,14 +29,17 @@ using Kind = NamedSet::Kind;
 /// Sides S1 = 123, S2 = 124, S3 = 234, S4 = 134, by the corner that they lack.
 constexpr std::array<char, 4> kSideName{'3', '4', '2', '1'};
 constexpr std::array<int, 3> kDirections{0, 1, 2};
+constexpr NameRules kAbaqusNames{.longest = 64, .one_space = true};
 class AbaqusWriter {
  public:
   AbaqusWriter(MeshOutput& out, const MeshParts& mesh)
       : text_(out.file()),
         mesh_(mesh),
         cells_(mesh),
-        names_(legal_names(out, mesh, {.longest = 64})),
-        number_(cells_.cells()) {}
+        names_(legal_names(out, mesh, kAbaqusNames)),
+        number_(cells_.cells()) {
+    for (const std::string& name : names_) further_.legal(name);
+  }
 
   void write() {
     text_ << "*HEADING\nMesh by octafront\n";
@@ -52,6 +55,18 @@ class AbaqusWriter {
     for (std::size_t p = 0; p < names_.size(); ++p)
       if (mesh_.parts()[p].origin != Part::Origin::kRegion) write_set(mesh_.parts()[p], names_[p]);
     if (!mesh_.mesh().periods.empty()) write_periods();
+  }
+
+  void write_materials(const std::vector<SetMaterial>& materials, double poissons_ratio) {
+    for (const SetMaterial& material : materials)
+      for (std::size_t p = 0; p < names_.size(); ++p) {
+        const Part& part = mesh_.parts()[p];
+        if (part.origin != Part::Origin::kSet || part.kind != Kind::kElements || part.name != material.set) continue;
+        text_.line("** {}: {} = {:.9g}", names_[p], one_line(material.quantity), material.value);
+        if (material.quantity != "E") continue;
+        text_.line("*MATERIAL, NAME={}\n*ELASTIC\n{:.9g}, {:.9g}", names_[p], material.value, poissons_ratio);
+        text_.line("*SOLID SECTION, ELSET={0}, MATERIAL={0}", names_[p]);
+      }
   }
 
   /// Of the curves in a list with commas. Throws OptionError.
@@ -208,7 +223,7 @@ class AbaqusWriter {
   MixedCells cells_;
   std::vector<std::string> names_;  ///< of the parts
   std::size_t number_;              ///< of the last element
-  LegalNames further_{{.longest = 64}};
+  LegalNames further_{kAbaqusNames};
 };
 
 }  // namespace
@@ -221,6 +236,7 @@ void write_abaqus(MeshOutput& out, const MeshParts& mesh) {
                    "tetrahedra, `as_tets`");
   AbaqusWriter writer(out, mesh);
   writer.write();
+  writer.write_materials(out.options().materials, out.options().poissons_ratio);
   writer.write_beams(out.options().beams);
   if (!out.options().cohesive) return;
   if (mesh.second_order())

@@ -454,8 +454,8 @@ class MshFile {
   }
 
   template <class TagOf>
-  void write_values(std::span<const MeshField> fields, const TagOf& tag_of) {
-    write_fields(text_, out_, fields, tag_of);
+  void write_values(std::span<const MeshField> fields, const TagOf& tag_of, const MixedCells* cells = nullptr) {
+    write_fields(text_, out_, fields, tag_of, cells);
   }
 
  private:
@@ -542,15 +542,15 @@ class MshFile {
 };
 
 /// All in the file that was asked for; `for_each_piece` of a mesh that is not divided visits it as one.
-void write_in_one(MeshOutput& out, const MshWhole& whole, std::span<const MeshField> fields,
+void write_in_one(MeshOutput& out, const MshWhole& whole, std::span<const MeshField> fields, const MixedCells* cells,
                   MshFile::Pieces for_each_piece) {
   std::vector<std::uint32_t> all(whole.parts());
   for (std::uint32_t k = 0; k < all.size(); ++k) all[k] = k;
   MshFile file(out.file(), whole, out.as_text());
   file.write(for_each_piece, all, {1, whole.mesh().points()});
   const std::uint64_t before = whole.tag_of_element(3, 0);
-  file.write_values(fields,
-                    [&](const MeshField& field, std::size_t i) { return (field.of_elements ? before : 1) + i; });
+  file.write_values(
+      fields, [&](const MeshField& field, std::size_t i) { return (field.of_elements ? before : 1) + i; }, cells);
 }
 
 /// The file of one part, with its ghosts.
@@ -575,7 +575,7 @@ void write_msh(MeshOutput& out, const MeshParts& mesh) {
   const MixedCells cells(mesh);
   const MshWhole whole(mesh, cells, 0);
   const MshPiece piece(whole);
-  write_in_one(out, whole, out.fields(), [&](MshFile::Visit visit) { visit(piece); });
+  write_in_one(out, whole, out.fields(), &cells, [&](MshFile::Visit visit) { visit(piece); });
 }
 
 void write_msh_parts(MeshOutput& out, Pieces& pieces) {
@@ -584,7 +584,7 @@ void write_msh_parts(MeshOutput& out, Pieces& pieces) {
     out.note("Gmsh MSH 4.1 in parts is written without the pairs of nodes of a periodic cell");
   const MshWhole whole(pieces.whole(), pieces.cells(), pieces.count());
   if (!out.options().split_files)
-    return write_in_one(out, whole, pieces.fields(), [&](MshFile::Visit visit) {
+    return write_in_one(out, whole, pieces.fields(), nullptr, [&](MshFile::Visit visit) {
       for (std::uint32_t k = 0; k < pieces.count(); ++k) visit(MshPiece(whole, pieces.piece(k), false));
     });
   const std::filesystem::path& target = out.target();

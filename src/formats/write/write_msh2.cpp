@@ -37,8 +37,9 @@ class Msh2Writer {
     out_.close("Elements");
     if (!mesh_.mesh().periods.empty() && !mesh_.cells_only()) write_periodic();
     const std::size_t before = mesh_.edges() + cells_.faces();
-    write_fields(text_, out_, fields_,
-                 [&](const MeshField& field, std::size_t i) { return (field.of_elements ? before : 0) + i + 1; });
+    write_fields(
+        text_, out_, fields_,
+        [&](const MeshField& field, std::size_t i) { return (field.of_elements ? before : 0) + i + 1; }, &cells_);
   }
 
  private:

@@ -29,13 +29,13 @@ constexpr std::array<std::uint8_t, 8> kQuad8{0, 4, 1, 5, 2, 6, 3, 7};
 constexpr std::array<std::uint8_t, 3> kBeam3{0, 2, 1};
 
 /// Others end a name at the first blank.
-constexpr NameRules kNames{
+constexpr NameRules kUnvNames{
     .longest = 40, .also = "_-.:+<>&\"'()[]{}/*=#%$!?@~^|,;", .letter_first = false, .ignores_case = false};
 
 class UnvWriter {
  public:
   UnvWriter(MeshOutput& out, const MeshParts& mesh)
-      : text_(out.file()), mesh_(mesh), cells_(mesh), names_(legal_names(out, mesh, kNames)) {}
+      : text_(out.file()), mesh_(mesh), cells_(mesh), names_(legal_names(out, mesh, kUnvNames)) {}
 
   void write() {
     open(2411);

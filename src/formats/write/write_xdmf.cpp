@@ -110,6 +110,7 @@ class XdmfWriter {
         write_set(out, (of_nodes ? "nodes " : grid.prefix) + part.name, part, of_nodes ? mesh_.points() : n,
                   fmt::format("{}/set_{}", group, ++sets));
     }
+    if (grid.kind == Kind::kElements) write_fields(out, group);
     out << "    </Grid>\n  </Domain>\n</Xdmf>\n";
   }
 
@@ -158,6 +159,25 @@ class XdmfWriter {
                        for (std::uint64_t k = 0; k < to.size(); ++k)
                          to[k] = mesh_.mesh().points[(first + k) / 3][static_cast<int>((first + k) % 3)];
                      }));
+  }
+
+  void write_fields(TextWriter& out, const std::string& group) {
+    std::size_t number = 0;
+    for (const MeshField& field : out_.fields()) {
+      const std::uint64_t each = field.components, n = field.of_elements ? cells_.cells() : mesh_.points();
+      out.line("      <Attribute AttributeType=\"{}\" Center=\"{}\" Name=\"{}\">", each == 1 ? "Scalar" : "Matrix",
+               field.of_elements ? "Cell" : "Node", escaped(field.name));
+      const std::string path = fmt::format("{}/field_{}", group, ++number);
+      item(out, fmt::format("{} {}", n, each), "Float", 8, h5_, path);
+      out << "      </Attribute>\n";
+      values_->dataset(path, {n, each}, Hdf5Writer::Fill<double>([&](std::uint64_t first, std::span<double> to) {
+                         for (std::uint64_t k = 0; k < to.size(); ++k) {
+                           const std::uint64_t i = (first + k) / each;
+                           to[k] =
+                               field.values[(field.of_elements ? cells_.first_tet(i) : i) * each + (first + k) % each];
+                         }
+                       }));
+    }
   }
 
   /// `name` with the quote behind it, and more attributes of XML if there are any.

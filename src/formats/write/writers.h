@@ -29,6 +29,7 @@ void write_vtu(MeshOutput& out, const MeshParts& mesh);
 void write_vtk(MeshOutput& out, const MeshParts& mesh);
 void write_msh(MeshOutput& out, const MeshParts& mesh);
 void write_msh2(MeshOutput& out, const MeshParts& mesh);
+void write_simnibs(MeshOutput& out, const MeshParts& mesh);
 void write_medit(MeshOutput& out, const MeshParts& mesh);
 void write_medit_binary(MeshOutput& out, const MeshParts& mesh);
 void write_abaqus(MeshOutput& out, const MeshParts& mesh);

@@ -7,6 +7,7 @@
 #include "images/files/byte_source.h"
 #include "images/files/dicom/series.h"
 #include "images/files/image_readers.h"
+#include "images/files/masks.h"
 
 #include <algorithm>
 #include <array>
@@ -33,8 +34,10 @@ Image read_raw_by_header(const Reading& reading) {
   return read_raw(reading);
 }
 
-constexpr std::array kKinds{Kind{is_nrrd, read_nrrd}, Kind{is_dicom, read_dicom}, Kind{is_nifti, read_nifti},
-                            Kind{is_meta, read_meta}, Kind{is_raw_header, read_raw_by_header}};
+constexpr std::array kKinds{Kind{is_nrrd, read_nrrd},   Kind{is_dicom, read_dicom},
+                            Kind{is_nifti, read_nifti}, Kind{is_meta, read_meta},
+                            Kind{is_mgh, read_mgh},     Kind{is_npy, read_npy},
+                            Kind{is_tiff, read_tiff},   Kind{is_raw_header, read_raw_by_header}};
 
 /// The first bytes of a file, unpacked if they are compressed: as many as come before what is damaged, which readers
 /// will complain about.
@@ -78,8 +81,8 @@ std::string first_bytes(const fs::path& file) {
 }
 
 /// Endings of files that say themselves what they hold; `.img` may be raw.
-constexpr std::array kOwnEndings{".nii", ".hdr",  ".nrrd", ".nhdr", ".mha",  ".mhd", ".dcm",
-                                 ".stp", ".step", ".igs",  ".iges", ".brep", ".json"};
+constexpr std::array kOwnEndings{".nii", ".hdr", ".nrrd", ".nhdr", ".mha",  ".mhd", ".dcm",  ".mgh",  ".mgz",
+                                 ".npy", ".tif", ".tiff", ".stp",  ".step", ".igs", ".iges", ".brep", ".json"};
 
 bool claims_a_kind(const fs::path& file) {
   const fs::path bare = file.extension() == ".gz" ? file.stem() : file;
@@ -120,12 +123,37 @@ SliceFiles slice_files(const std::vector<std::string>& files, const RunContext& 
 
 }  // namespace
 
-/// Of a list of files, all of which must be slices.
+/// One image of a file that is none of DICOM.
+Image read_one(const std::string& file, const ImageChoice& choice, const RunContext& context) {
+  const io::LoadedFile loaded(file, context);
+  const auto beside = [&](const std::string& name) { return opened_beside(file, name, context); };
+  return read_image_bytes({loaded.input(), choice, beside});
+}
+
+bool is_mask(const std::string& file) {
+  const std::string head = first_bytes(file);
+  const Kind* kind = kind_of(head);
+  return kind != nullptr && kind->matches != is_dicom && kind->matches != is_raw_header;
+}
+
+/// Masks of one grid; of TIFF slices of one image.
+Image read_masks(const std::vector<std::string>& files, const RunContext& context) {
+  if (std::ranges::all_of(files, [](const std::string& file) { return is_tiff(first_bytes(file)); }))
+    return read_tiff_stack(files, [&](const std::string& file) {
+      const auto loaded = std::make_shared<const io::LoadedFile>(file, context);
+      return KeptFile{loaded->input(), loaded};
+    });
+  return image_of_masks(files, [&](const std::string& file) { return read_one(file, {}, context); });
+}
+
+/// Of a list of files, all of which must be slices, or all masks.
 Image read_slices(const std::vector<std::string>& files, const ImageChoice& choice, const RunContext& context) {
+  if (std::ranges::all_of(files, is_mask)) return read_masks(files, context);
   for (const std::string& file : files)
     if (!is_dicom(first_bytes(file)))
-      throw InputError(
-          fmt::format("{}: is no DICOM file; several files make an image only if all are DICOM slices", file));
+      throw InputError(fmt::format(
+          "{}: is no DICOM file; several files make an image if all are DICOM slices, or all others, masks of it",
+          file));
   try {
     return read_series(slice_files(files, context), choice, context);
   } catch (const InputError& error) {
@@ -136,6 +164,11 @@ Image read_slices(const std::vector<std::string>& files, const ImageChoice& choi
 
 Image read_folder(const std::string& folder, const ImageChoice& choice, const RunContext& context) {
   const std::vector<std::string> names = dicom_files_in(folder, context);
+  if (names.empty()) {
+    const std::vector<std::string> masks = images_in(folder, is_mask);
+    if (masks.empty()) throw InputError(fmt::format("{}: is a folder without DICOM files, and without masks", folder));
+    return read_masks(masks, context);
+  }
   SliceFiles files = slice_files(names, context);
   files.skip_others = true;
   try {
@@ -149,10 +182,11 @@ Image read_folder(const std::string& folder, const ImageChoice& choice, const Ru
 Image read_image_bytes(const Reading& reading) {
   const std::string head = head_of(reading.input);
   if (const Kind* kind = kind_of(head)) return kind->read(reading);
-  reading.input.fail(
-      fmt::format("is no image of a kind that is known here (NIfTI, NRRD, MetaImage, DICOM, or raw voxels with a "
-                  "JSON file beside them); it begins with {}",
-                  io::in_quotes(head.substr(0, 24))));
+  reading.input.fail(fmt::format(
+      "is no image of a kind that is known here (NIfTI, NRRD, MetaImage, DICOM, FreeSurfer MGZ, npy, TIFF, or "
+      "raw voxels with a "
+      "JSON file beside them); it begins with {}",
+      io::in_quotes(head.substr(0, 24))));
 }
 
 std::uint32_t chosen_series(const Reading& reading, std::uint64_t count, const std::string& what) {

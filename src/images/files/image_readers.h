@@ -9,6 +9,8 @@
 #include <functional>
 #include <memory>
 #include <string>
+#include <string_view>
+#include <vector>
 
 namespace octafront::image {
 
@@ -30,6 +32,11 @@ struct Reading {
 
 Image read_nifti(const Reading& reading);
 Image read_nrrd(const Reading& reading);
+Image read_mgh(const Reading& reading);
+Image read_npy(const Reading& reading);
+Image read_tiff(const Reading& reading);
+/// Slices, one upon the other.
+Image read_tiff_stack(const std::vector<std::string>& files, const std::function<KeptFile(const std::string&)>& open);
 Image read_meta(const Reading& reading);
 /// `input` is the JSON that says what the bytes of `data` mean; empty: the file that it names.
 Image read_raw(const Reading& reading, const std::string& data = {});
@@ -37,6 +44,9 @@ Image read_raw(const Reading& reading, const std::string& data = {});
 /// Whether the bytes, unpacked where need be, begin as the format does; readers say what is wrong behind that.
 bool is_nifti(std::string_view head);
 bool is_nrrd(std::string_view head);
+bool is_mgh(std::string_view head);
+bool is_npy(std::string_view head);
+bool is_tiff(std::string_view head);
 bool is_meta(std::string_view head);
 bool is_raw_header(std::string_view head);
 

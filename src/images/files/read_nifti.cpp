@@ -1,6 +1,7 @@
 // NIfTI-1 and NIfTI-2, one file or .hdr with .img, compressed or not, either byte order; and Analyze 7.5, which NIfTI-1
 // grew from. https://nifti.nimh.nih.gov/nifti-1, https://nifti.nimh.nih.gov/nifti-2
 
+#include "formats/containers/scanner.h"
 #include "images/files/byte_source.h"
 #include "images/files/grids.h"
 #include "images/files/image_readers.h"
@@ -355,7 +356,8 @@ class Nifti {
       if (!(header_.vox_offset >= static_cast<double>(header_bytes_)) || header_.vox_offset > 1e15)
         input_.fail(fmt::format("claims that its voxels begin at byte {}; the file is damaged: export it again",
                                 header_.vox_offset));
-      source_.skip(static_cast<std::uint64_t>(header_.vox_offset) - header_bytes_ + before, "the voxels");
+      read_extensions(static_cast<std::uint64_t>(header_.vox_offset) - header_bytes_);
+      source_.skip(before, "the voxels");
       image_.values = read_voxels(source_, image_.grid.size, how, image_.notes);
       source_.check_end();
       return;
@@ -366,6 +368,27 @@ class Nifti {
     voxels.skip((offset > 0 && offset < 1e15 ? static_cast<std::uint64_t>(offset) : 0) + before, "the voxels");
     image_.values = read_voxels(voxels, image_.grid.size, how, image_.notes);
     voxels.check_end();
+  }
+
+  /// What lies between the header and the voxels: TotalSegmentator keeps the names of its labels there, as Caret does.
+  void read_extensions(std::uint64_t bytes) {
+    constexpr std::uint64_t kMost = 1 << 22;
+    if (bytes > kMost) return source_.skip(bytes, "the voxels");
+    const std::string text(source_.require(bytes, "the voxels"));
+    constexpr std::string_view kKey = "Key=\"", kLabel = "<Label ", kEnd = "</Label>", kOpen = "<![CDATA[",
+                               kClose = "]]>";
+    for (std::size_t at = text.find(kLabel); at != std::string::npos; at = text.find(kLabel, at + 1)) {
+      const std::size_t end = text.find(kEnd, at), name = text.find('>', at), key = text.find(kKey, at);
+      if (end == std::string::npos || name >= end || key >= name) continue;
+      std::string_view words = io::trimmed(std::string_view(text).substr(name + 1, end - name - 1));
+      if (words.starts_with(kOpen) && words.ends_with(kClose))
+        words = words.substr(kOpen.size(), words.size() - kOpen.size() - kClose.size());
+      const std::size_t digits = key + kKey.size();
+      double value = 0;
+      if (io::parse_number(std::string_view(text).substr(digits, text.find('"', digits) - digits), value) &&
+          value == std::floor(value) && std::abs(value) < 1e15 && !words.empty())
+        image_.names.push_back({static_cast<std::int64_t>(value), std::string(words)});
+    }
   }
 
   /// head.hdr: head.img; head.hdr.gz: head.img.gz.

@@ -4,6 +4,7 @@
 #include "formats/containers/scanner.h"
 #include "images/files/grids.h"
 #include "images/files/image_readers.h"
+#include "images/files/masks.h"
 #include "images/files/slice_files.h"
 
 #include <algorithm>
@@ -332,15 +333,48 @@ class Nrrd {
       files_.at_end = skip < 0;
       files_.skipped_bytes = static_cast<std::uint64_t>(std::max<std::int64_t>(0, skip));
     }
-    const std::uint64_t voxels = image_.grid.voxels(), lists = extra_ ? static_cast<std::uint64_t>(sizes_[*extra_]) : 1;
+    const std::uint64_t lists = extra_ ? static_cast<std::uint64_t>(sizes_[*extra_]) : 1;
+    if (has_layers()) return read_layers(lists);
     series_ = chosen_series(reading_, lists, "values per voxel");
-    const bool interleaved = extra_ == 0;
-    const Picked picked{interleaved ? series_ : series_ * voxels, voxels, interleaved ? lists : 1};
     if (is_text()) return read_text();
     find_files();
-    image_.values = files_.names.empty()
-                        ? read_attached(reading_, data_at_, files_, voxels * lists, picked, stored(), image_.notes)
-                        : read_data_files(reading_, files_, voxels * lists, picked, stored(), image_.notes);
+    image_.values = values_of_list(series_, lists);
+  }
+
+  /// One of the values that each voxel has.
+  Image::Values values_of_list(std::uint64_t list, std::uint64_t lists) {
+    const std::uint64_t voxels = image_.grid.voxels();
+    const bool interleaved = extra_ == 0;
+    const Picked picked{interleaved ? list : list * voxels, voxels, interleaved ? lists : 1};
+    return files_.names.empty()
+               ? read_attached(reading_, data_at_, files_, voxels * lists, picked, stored(), image_.notes)
+               : read_data_files(reading_, files_, voxels * lists, picked, stored(), image_.notes);
+  }
+
+  /// 3D Slicer's segments that overlap lie in several layers, the values of a voxel.
+  bool has_layers() const {
+    return extra_ && reading_.choice.series == 0 && !is_text() &&
+           std::ranges::any_of(keys_, [](const auto& k) { return k.first.ends_with("_Layer"); });
+  }
+
+  void read_layers(std::uint64_t lists) {
+    find_files();
+    Layers layers;
+    for (std::uint64_t list = 0; list < lists; ++list) layers.values.push_back(values_of_list(list, lists));
+    for (std::size_t n = 0; keys_.contains(fmt::format("Segment{}_Layer", n)); ++n) {
+      const auto key = [&](const char* what) {
+        const auto found = keys_.find(fmt::format("Segment{}_{}", n, what));
+        return found == keys_.end() ? std::string() : found->second;
+      };
+      double layer = 0, value = 0;
+      if (!io::parse_number(key("Layer"), layer) || !io::parse_number(key("LabelValue"), value) || !(layer >= 0) ||
+          !(layer < static_cast<double>(lists)) || !(std::abs(value) < 1e15))
+        input_.fail(fmt::format("its segment {} has no layer or value that the file has; export it again", n));
+      const std::string name = key("Name");
+      layers.segments.push_back({static_cast<std::size_t>(layer), static_cast<std::int64_t>(value),
+                                 name.empty() ? fmt::format("segment {}", n + 1) : name});
+    }
+    put_together(layers, image_);
   }
 
   void read_text() {
@@ -369,6 +403,7 @@ class Nrrd {
 
   /// Segment3_Name:=liver, Segment3_LabelValue:=7, Segment3_Layer:=0
   void name_segments() {
+    if (!image_.names.empty()) return;
     for (const auto& [key, name] : keys_) {
       if (!key.starts_with("Segment") || !key.ends_with("_Name")) continue;
       const std::string prefix = key.substr(0, key.size() - 4);

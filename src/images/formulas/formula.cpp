@@ -26,6 +26,7 @@ namespace formulas {
 
 enum class Code : std::uint8_t {
   kNumber,
+  kVariable,
   kX,
   kY,
   kZ,
@@ -86,6 +87,7 @@ constexpr std::array kFunctions{
 std::size_t arguments_of(Code code) {
   switch (code) {
     case Code::kNumber:
+    case Code::kVariable:
     case Code::kX:
     case Code::kY:
     case Code::kZ:
@@ -180,7 +182,8 @@ bool is_space(char c) {
 
 class Parser {
  public:
-  Parser(const std::string& text, double period) : text_(text), period_(period) {}
+  Parser(const std::string& text, double period, const std::vector<std::string>& variables)
+      : text_(text), period_(period), variables_(variables) {}
 
   std::vector<Command> run() {
     comparison();
@@ -310,6 +313,8 @@ class Parser {
     if (word == "z") return emit(Code::kZ);
     if (word == "pi") return emit(Code::kNumber, std::numbers::pi);
     if (word == "L") return emit(Code::kNumber, period_);
+    if (const auto v = std::ranges::find(variables_, word); v != variables_.end())
+      return emit(Code::kVariable, static_cast<double>(v - variables_.begin()));
     if (const NamedSurface surface = formulas::named_surface(word)) return named_surface(begin, word, surface);
     const auto found =
         std::find_if(kFunctions.begin(), kFunctions.end(), [&](const Function& f) { return f.name == word; });
@@ -324,6 +329,7 @@ class Parser {
 
   [[noreturn]] void refuse_name(std::size_t at, std::string_view word) const {
     std::string all = "x, y, z, pi, L";
+    for (const std::string& variable : variables_) all += ", " + variable;
     for (const Function& f : kFunctions) all += ", " + std::string(f.name);
     for (const std::string& surface : formulas::names_of_surfaces()) all += ", " + surface;
     fail(at, fmt::format("there is no \"{}\"; there are {}", word, all));
@@ -364,6 +370,7 @@ class Parser {
 
   const std::string& text_;
   double period_;
+  const std::vector<std::string>& variables_;
   std::size_t at_ = 0;
   int nesting_ = 0;
   std::size_t depth_ = 0, deepest_ = 0;
@@ -411,10 +418,12 @@ struct Formula::Program {
   bool is_periodic = false;
 };
 
-Formula::Formula(const std::string& text, double period) {
+Formula::Formula(const std::string& text, double period) : Formula(text, period, {}) {}
+
+Formula::Formula(const std::string& text, double period, const std::vector<std::string>& variables) {
   if (!(period > 0) || !std::isfinite(period))
     throw OptionError(fmt::format("`cell` is {}: the period must be a length above 0", period));
-  Parser parser(text, period);
+  Parser parser(text, period, variables);
   std::vector<Command> commands = parser.run();
   program_ = std::make_unique<const Program>(Program{std::move(commands), parser.has_surface()});
 }
@@ -426,13 +435,16 @@ bool Formula::is_periodic() const {
   return program_->is_periodic;
 }
 
-double Formula::at(Vec3 p) const {
+double Formula::at(Vec3 p, std::span<const double> values) const {
   std::array<double, kDeepest> stack;
   std::size_t top = 0;
   for (const Command& command : program_->commands) {
     switch (command.code) {
       case Code::kNumber:
         stack[top++] = command.number;
+        break;
+      case Code::kVariable:
+        stack[top++] = values[static_cast<std::size_t>(command.number)];
         break;
       case Code::kX:
         stack[top++] = p.x;

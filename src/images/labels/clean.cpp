@@ -6,8 +6,8 @@
 #include "base/core/thread_limit.h"
 #include "base/core/wording.h"
 #include "images/labels/closing.h"
-#include "images/labels/contacts.h"
 #include "images/labels/runs.h"
+#include "images/labels/small_contacts.h"
 
 #include <algorithm>
 #include <cmath>
@@ -187,7 +187,8 @@ void note_contacts(const image::ClearedContacts& cleared, double below, LabelIma
 
 void check(const CleanOptions& options) {
   if (!(options.islands >= 0) || !(options.holes >= 0) || !(options.contacts >= 0))
-    throw OptionError("volumes of islands and holes, areas of contacts are at least 0 (`islands`, `holes`, `contacts`)");
+    throw OptionError(
+        "volumes of islands and holes, areas of contacts are at least 0 (`islands`, `holes`, `contacts`)");
   constexpr std::uint32_t kMostClosing = 64;
   if (options.closing > kMostClosing)
     throw OptionError(fmt::format("`close_voxels` is {}; at most {} can be closed", options.closing, kMostClosing));

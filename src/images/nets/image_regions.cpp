@@ -25,6 +25,8 @@ void check_options_of(RegionKind kind, const ImageRegions& regions) {
   if (kind == RegionKind::kGrey && speaks_of_labels(regions.labels))
     throw OptionError(
         "`labels`, `ignore` and `merge` are for images of labels, `iso` and `band` for grey ones; give one kind");
+  if (kind == RegionKind::kGrey && !regions.electrodes.empty())
+    throw OptionError("`electrode` is for images of labels, and this one is taken as grey");
   if (kind == RegionKind::kLabels && !regions.bands.empty())
     throw OptionError(
         "`iso` and `band` are for grey images, and this one is taken as labels; say that it is a grey image, or leave "
@@ -115,6 +117,11 @@ Complex complex_of_segmentation(const Image& image, const ImageRegions& regions,
   std::vector<std::string> notes = std::exchange(labels.notes, {});
   if (regions.clean.any()) {
     labels = cleaned(labels, regions.clean, context);
+    add(notes, labels.notes);
+  }
+  if (!regions.electrodes.empty()) {
+    labels.notes.clear();
+    labels = with_electrodes(std::move(labels), regions.electrodes);
     add(notes, labels.notes);
   }
   if (!goes_on(regions.margin)) add(notes, ends_at_edge(labels, regions.closed_at_box));

@@ -6,6 +6,7 @@
 #include "base/geometry/live_triangles.h"
 #include "base/geometry/measures.h"
 #include "base/geometry/predicates.h"
+#include "base/mesh/link_condition.h"
 #include "improve/passes/fewest_poor.h"
 #include "improve/passes/passes.h"
 #include "improve/passes/poor_tets.h"
@@ -35,26 +36,6 @@ constexpr double kNoWorse = 1.02;
 constexpr double kSpacing = 0.1;
 /// Steps per vertex that moves at most.
 constexpr int kStepsOfEdit = 8;
-
-/// Whether two sorted ranges have a common value that is not in a third.
-template <typename T>
-bool meet_beyond(const std::vector<T>& a, const std::vector<T>& b, const std::vector<T>& allowed) {
-  std::vector<T> common;
-  std::set_intersection(a.begin(), a.end(), b.begin(), b.end(), std::back_inserter(common));
-  return !std::includes(allowed.begin(), allowed.end(), common.begin(), common.end());
-}
-
-template <typename T>
-void sort_out(std::vector<T>& list) {
-  std::sort(list.begin(), list.end());
-  list.erase(std::unique(list.begin(), list.end()), list.end());
-}
-
-/// What lies around a vertex: vertices and edges opposite it, in tets and in triangles of the boundary.
-struct Link {
-  std::vector<VertexIndex> vertices, boundary_vertices;
-  std::vector<Edge> edges, boundary_edges;
-};
 
 class BoundaryEditor {
  public:
@@ -110,7 +91,7 @@ class BoundaryEditor {
     for (const VertexIndex u : corners) {
       if (!mesh_.on_boundary(u) || !guide_.may_slide(u)) continue;
       editor_.star(u, star_);
-      link_ = link_of(star_);
+      link_ = link_at(star_);
       for (const VertexIndex w : corners)
         if (w != u && mesh_.on_boundary(w)) consider(u, w);
     }
@@ -136,7 +117,7 @@ class BoundaryEditor {
     if (!may_move(v, on_features)) return false;
     editor_.star(v, star_);
     if (!star_edit_.load(v, star_)) return false;
-    link_ = link_of(star_);
+    link_ = link_at(star_);
     const Vec3 from = mesh_.point(v);
     take_old();
     if (walls_.hold(old_)) return false;
@@ -187,9 +168,9 @@ class BoundaryEditor {
   void consider(VertexIndex u, VertexIndex w) {
     if (guide_.is_frozen(w)) return;
     if (guide_.kind(u) == BoundaryGuide::Kind::kCurve && !guide_.is_feature_edge(u, w)) return;
-    if (!std::binary_search(link_.boundary_vertices.begin(), link_.boundary_vertices.end(), w)) return;
+    if (!std::binary_search(link_.wall_vertices.begin(), link_.wall_vertices.end(), w)) return;
     Collapse c{u, w, 0, {}, {}, {}, {}};
-    if (!plan_tets(c) || !(c.gain > best_.gain) || !keeps_manifold(u, w) || !plan_boundary(c)) return;
+    if (!plan_tets(c) || !(c.gain > best_.gain) || !keeps_manifold(w) || !plan_boundary(c)) return;
     const Vec3 p = mesh_.point(u);
     if (is_true(p, limit_at(p)) && crosses_nothing() && stays_near()) best_ = std::move(c);
   }
@@ -226,48 +207,16 @@ class BoundaryEditor {
     return !c.new_tets.empty();
   }
 
-  /// The link condition (Dey, Edelsbrunner, Guha, Nekhayev 1999), the outside being a cone over the boundary.
-  bool keeps_manifold(VertexIndex u, VertexIndex w) {
-    Link of_edge;
-    for (const HalfFace h : star_) {
-      if (!mesh_.has(h / 4, w)) continue;
-      std::vector<VertexIndex> others;
-      for (const VertexIndex v : mesh_.tet(h / 4))
-        if (v != u && v != w) others.push_back(v);
-      of_edge.vertices.insert(of_edge.vertices.end(), others.begin(), others.end());
-      of_edge.edges.push_back(sorted(others[0], others[1]));
-      for (const VertexIndex v : others)
-        if (is_outside(mesh_.across(4 * (h / 4) + mesh_.corner_of(h / 4, v == others[0] ? others[1] : others[0]))))
-          of_edge.boundary_vertices.push_back(v);
-    }
-    sort_out(of_edge.vertices), sort_out(of_edge.edges), sort_out(of_edge.boundary_vertices);
+  bool keeps_manifold(VertexIndex w) {
     editor_.star(w, star_of_other_);
-    const Link other = link_of(star_of_other_);
-    return !meet_beyond(link_.vertices, other.vertices, of_edge.vertices) &&
-           !meet_beyond(link_.edges, other.edges, of_edge.edges) &&
-           !meet_beyond(link_.boundary_vertices, other.boundary_vertices, of_edge.boundary_vertices) &&
-           !meet_beyond(link_.boundary_edges, other.boundary_edges, {});
+    return may_contract(link_, link_at(star_of_other_), link_at(star_, w));
   }
 
-  static Edge sorted(VertexIndex a, VertexIndex b) { return a < b ? Edge{a, b} : Edge{b, a}; }
-
-  Link link_of(std::span<const HalfFace> star) const {
-    Link link;
-    for (const HalfFace h : star) {
-      const Tet& t = mesh_.tet(h / 4);
-      const auto& f = kTetFaces[h % 4];
-      for (int i = 0; i < 3; ++i) {
-        const VertexIndex a = t[f[i]], b = t[f[(i + 1) % 3]];
-        link.vertices.push_back(a);
-        link.edges.push_back(sorted(a, b));
-        // The face at the vertex and this edge is opposite the third corner.
-        if (!is_outside(mesh_.across(4 * (h / 4) + f[(i + 2) % 3]))) continue;
-        link.boundary_edges.push_back(sorted(a, b));
-        link.boundary_vertices.insert(link.boundary_vertices.end(), {a, b});
-      }
-    }
-    sort_out(link.vertices), sort_out(link.edges), sort_out(link.boundary_vertices), sort_out(link.boundary_edges);
-    return link;
+  /// Of the vertex opposite these faces, or of its edge to w.
+  VertexLink link_at(std::span<const HalfFace> star, VertexIndex w = kNone) const {
+    const auto tet = [&](TetIndex t) -> const Tet& { return mesh_.tet(t); };
+    return link_of(
+        star, tet, [&](HalfFace h) { return is_outside(mesh_.across(h)); }, w);
   }
 
   /// The boundary triangles at u, and those with w in its place; false if a patch would vanish or two curves merge.
@@ -304,8 +253,8 @@ class BoundaryEditor {
   /// How far the boundary may stray around the vertex at p.
   double limit_at(Vec3 p) const {
     double edges = 0;
-    for (const VertexIndex v : link_.boundary_vertices) edges += distance(p, mesh_.point(v));
-    return std::min(guide_.tolerance_at(p), kMovedPart * edges / static_cast<double>(link_.boundary_vertices.size()));
+    for (const VertexIndex v : link_.wall_vertices) edges += distance(p, mesh_.point(v));
+    return std::min(guide_.tolerance_at(p), kMovedPart * edges / static_cast<double>(link_.wall_vertices.size()));
   }
 
   /// Whether the new triangles stray by no more than the limit, from the vertex p too, which the old ones had in
@@ -396,7 +345,7 @@ class BoundaryEditor {
   Floor floor_;
   ShapeBatch batch_;
   std::vector<HalfFace> star_, star_of_other_;
-  Link link_;
+  VertexLink link_;
   std::vector<TriangleCorners> old_;
   std::vector<IdTriangle> new_;
   std::vector<std::uint32_t> numbers_;  ///< of the old ones

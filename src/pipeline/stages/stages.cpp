@@ -388,11 +388,11 @@ SizeField choose_sizes(const Prepared& input, Run& run) {
     note_misplaced_sizes(input.surface.mesh(), size, stage);
     return keeps_surface(run.options)
                ? size_field_of_surface(input.surface, size, stage)
-               : make_size_field(input.surface, size, stage,
-                                 {input.bound, input.closed.is_in_it, run.options.surface.volume_tolerance.has_value(),
-                                  input.geometry ? kTurnsOfGeometry : 0, run.options.order > 1,
-                                  run.options.surface.finest},
-                                 budget);
+               : make_size_field(
+                     input.surface, size, stage,
+                     {input.bound, input.closed.is_in_it, run.options.surface.volume_tolerance.has_value(),
+                      input.geometry ? kTurnsOfGeometry : 0, run.options.order > 1, run.options.surface.finest},
+                     budget);
   });
   const MethodTraits& method = traits_of(run.options.method);
   const SurfaceMesh& surface = input.surface.mesh();

@@ -30,7 +30,8 @@ std::string given_up_for_size(const Options& options, double spacing) {
   const double strays = *used.surface.max_deviation, close = kDeviation * spacing;
   if (strays <= close) return {};
   return fmt::format(
-      "elements of {:.4g} are coarser than voxels of {:.4g}: their surfaces may stray by {:.3g} from those of the voxels, "
+      "elements of {:.4g} are coarser than voxels of {:.4g}: their surfaces may stray by {:.3g} from those of the "
+      "voxels, "
       "and layers thinner than elements get flat ones. `max_deviation` {:.3g} follows the voxels, `gap` 1 the layers",
       *options.size.size, spacing, strays, close);
 }
@@ -48,9 +49,11 @@ Options options_for_voxels(Options options, double spacing) {
       sizes.chord_error = kDeviation * spacing;
   }
   if (!options.surface.feature_angle) options.surface.feature_angle = kBoxAngle;
-  if (sizes.size || sizes.elements)
-    options.surface.finest = std::min(sizes.size.value_or(spacing),
-                                      std::max(spacing, is_bounded ? 0 : kLeastOfSize * sizes.size.value_or(0)));
+  if (is_bounded)
+    options.surface.finest = std::min(spacing, *options.surface.max_deviation);
+  else if (sizes.size || sizes.elements)
+    options.surface.finest =
+        std::min(sizes.size.value_or(spacing), std::max(spacing, kLeastOfSize * sizes.size.value_or(0)));
   return options;
 }
 

@@ -128,10 +128,9 @@ std::string region_lines(const std::vector<RegionSummary>& regions) {
                                 "least beta", has_size ? "   by size" : "");
   for (std::size_t r = 0; r < std::min(regions.size(), kMostRegionLines); ++r) {
     const RegionSummary& region = regions[r];
-    out +=
-        fmt::format("  {:<30.30}{:>12}{:>14.6g}{:>12.4f}{:>12.4f}{}\n", region_label(region.name, r, regions.size()),
-                    grouped(region.quality.elements), region.volume, region.quality.beta_mean, region.quality.beta_min,
-                    has_size ? fmt::format("{:>10.0f}", region.needed) : "");
+    out += fmt::format("  {:<30.30}{:>12}{:>14.6g}{:>12.4f}{:>12.4f}{}\n", region_label(region.name, r, regions.size()),
+                       grouped(region.quality.elements), region.volume, region.quality.beta_mean,
+                       region.quality.beta_min, has_size ? fmt::format("{:>10.0f}", region.needed) : "");
     if (region.true_volume > 0)
       out += fmt::format("  {:<30}{:>12}{:>14.6g} ({:+.3f} %)\n", "  of the CAD solid", "", region.true_volume,
                          percent_off(region.volume + region.layers_volume, region.true_volume));

@@ -143,6 +143,13 @@ void check_size_options(const SizeOptions& o) {
   for (const NamedSize& n : o.named)
     require(std::isfinite(n.size) && n.size > 0,
             fmt::format("the size of \"{}\" must be a number above 0, but is {}", n.name, n.size));
+  for (const NamedSize& n : o.named)
+    require(
+        n.of_thickness == 0 ||
+            (n.of_thickness > 0 && std::isfinite(n.of_thickness) && n.most >= n.size && std::isfinite(n.most)),
+        fmt::format("the sizes of \"{}\" by thickness go from {} to {}, with a factor of {}: give a range upwards and "
+                    "a factor above 0",
+                    n.name, n.size, n.most, n.of_thickness));
   for (const NearSize& n : o.near) check_near(n);
   if (o.mesh) check_mesh(*o.mesh);
   for (const PointSize& s : o.point_sizes) {

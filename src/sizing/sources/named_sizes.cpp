@@ -3,6 +3,8 @@
 #include <octafront/error.h>
 #include <octafront/surface_mesh.h>
 
+#include "base/core/parallel.h"
+#include "base/geometry/measures.h"
 #include "base/geometry/triangle_tree.h"
 #include "base/mesh/complex.h"
 #include "base/places/places.h"
@@ -12,6 +14,7 @@
 #include <cmath>
 #include <limits>
 #include <string>
+#include <utility>
 
 #include <fmt/core.h>
 
@@ -27,7 +30,7 @@ constexpr double kAlong = 0.5;
 class Named {
  public:
   Named(const KnownSurface& known, const SizeOptions& options)
-      : surface_(known.mesh()), options_(options), places_(known.mesh(), &known.edges()) {
+      : surface_(known.mesh()), tree_(known.tree()), options_(options), places_(known.mesh(), &known.edges()) {
     result_.face.assign(surface_.triangles.size(), std::numeric_limits<double>::infinity());
   }
 
@@ -35,6 +38,10 @@ class Named {
     for (const NamedSize& named : options_.named) {
       const double h = std::max(named.size, options_.min_size.value_or(0));
       const SurfaceItems items = places_.at("size_of", place_of("size_of", named.name));
+      if (named.of_thickness > 0) {
+        ask_by_thickness(items, named, h);
+        continue;
+      }
       if (items.region) ask_region(*items.region, named.name, h);
       for (const std::uint32_t t : items.triangles) result_.face[t] = std::min(result_.face[t], h);
       for (const Edge& edge : items.edges) ask_edge(edge, h);
@@ -48,6 +55,39 @@ class Named {
       for (const std::uint32_t side : surface_.sides_of(t))
         if (side == region) result_.face[t] = std::min(result_.face[t], h);
     add_inside(boundary_of_region(surface_, region), name, h);
+  }
+
+  void ask_by_thickness(const SurfaceItems& items, const NamedSize& named, double least) {
+    if (!items.region)
+      throw OptionError(
+          fmt::format("`size_of`: \"{}\" is no region: only regions have sizes by their thickness", named.name));
+    const double most = std::max(named.most, least);
+    parallel_for(surface_.triangles.size(), [&](std::size_t t) {
+      const auto [front, behind] = surface_.sides_of(static_cast<std::uint32_t>(t));
+      for (const auto& [side, into] : {std::pair{front, 1.0}, {behind, -1.0}})
+        if (side == *items.region)
+          result_.face[t] = std::min(
+              result_.face[t],
+              std::clamp(named.of_thickness * thickness(t, into, least, most / named.of_thickness), least, most));
+    });
+    add_inside(boundary_of_region(surface_, *items.region), named.name, most);
+  }
+
+  /// From the middle of a triangle along its normal, or against it, to what faces it: within 60 degrees, for walls of
+  /// voxels are rough. `reach` where there is nothing nearer.
+  double thickness(std::size_t t, double into, double least, double reach) const {
+    constexpr double kFacing = 0.5;
+    const auto normal_of = [&](std::size_t f) {
+      const auto& [i, j, k] = surface_.triangles[f];
+      return unit_normal(surface_.points[i], surface_.points[j], surface_.points[k]);
+    };
+    const auto& [a, b, c] = surface_.triangles[t];
+    const double skipped = 0.05 * std::min(least, reach);  // its own triangle and its neighbours lie there
+    const Vec3 direction = normal_of(t) * into;
+    const Vec3 from = centroid(surface_.points[a], surface_.points[b], surface_.points[c]) + direction * skipped;
+    const TriangleTree::RayHit hit = tree_.first_hit(from, direction, reach - skipped);
+    if (hit.triangle == kNone || std::abs(dot(normal_of(hit.triangle), direction)) < kFacing) return reach;
+    return skipped + hit.t;
   }
 
   /// Points all over the inside of a region, so that its size holds in the middle too.
@@ -70,6 +110,7 @@ class Named {
   }
 
   const SurfaceMesh& surface_;
+  const TriangleTree& tree_;
   const SizeOptions& options_;
   SurfacePlaces places_;
   NamedSizes result_;
@@ -80,6 +121,8 @@ class Named {
 void take_places_in_space(SizeOptions& options) {
   std::erase_if(options.named, [&](const NamedSize& named) {
     const Place place = place_of("size_of", named.name);
+    if (place.is_in_space() && named.of_thickness > 0)
+      throw OptionError("`size_of`: a box or ball has no thickness: give a region");
     if (const auto* box = std::get_if<Box3>(&place.where)) options.regions.push_back({box->lo, box->hi, 0, named.size});
     if (const auto* ball = std::get_if<GroupRule::Sphere>(&place.where))
       options.regions.push_back({ball->center, ball->center, ball->radius, named.size});

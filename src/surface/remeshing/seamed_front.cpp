@@ -73,7 +73,8 @@ std::vector<std::uint8_t> on_lines(const WorkingMesh& mesh) {
 
 class SeamedFront : public FrontKind {
  public:
-  explicit SeamedFront(FrontWork& work) : FrontKind(work), seamed_(cut_along_seams(work.known, work.periods)), least_(work.known, work.limits.least) {}
+  explicit SeamedFront(FrontWork& work)
+      : FrontKind(work), seamed_(cut_along_seams(work.known, work.periods)), least_(work.known, work.limits.least) {}
 
   InputSurface& input() override { return seamed_.input; }
   const Features& features() const override { return seamed_.features; }

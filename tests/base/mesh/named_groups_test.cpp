@@ -1,5 +1,6 @@
 #include <octafront/error.h>
 #include <octafront/named_groups.h>
+#include <octafront/surface_mesh.h>
 #include <octafront/validity.h>
 
 #include "support/rich_mesh.h"
@@ -41,8 +42,12 @@ TEST(AddGroup, TakesPatchesByNameOrNumber) {
 TEST(AddGroup, SaysWhatIsNotThere) {
   TetMesh mesh = testing::rich_mesh(2);
   mesh.sets.clear();
-  EXPECT_THAT(add_group(mesh, {"g", Kind::kFaces, std::vector<std::string>{"lid", "99"}}),
-              AllOf(HasSubstr("\"lid\""), HasSubstr("\"99\"")));
+  for (const char* patch : {"lid", "99"}) try {
+      add_group(mesh, {"g", Kind::kFaces, std::vector<std::string>{"glue", patch}});
+      FAIL() << patch;
+    } catch (const OptionError& error) {
+      EXPECT_THAT(error.what(), AllOf(HasSubstr(patch), HasSubstr("glue")));
+    }
   EXPECT_THAT(add_group(mesh, {"far", Kind::kNodes, Box3{{9, 9, 9}, {10, 10, 10}}}), HasSubstr("nothing lies there"));
   EXPECT_TRUE(mesh.sets.empty());
 }
@@ -58,6 +63,39 @@ TEST(AddGroup, HoldsWhatHasAName) {
   EXPECT_THAT(add_group(mesh, group_rule("g=lid")), HasSubstr("it is left out"));
   for (const char* bad : {"g", "=glue", "g=", "g=elements:glue", "g=bxo:1,2", "g=box:1,2"})
     EXPECT_THROW(group_rule(bad), OptionError) << bad;
+}
+
+TEST(AddGroup, IsCheckedOnTheSurfaceBefore) {
+  SurfaceMesh cube;
+  cube.points = {{0, 0, 0}, {1, 0, 0}, {0, 1, 0}, {0, 0, 1}};
+  cube.triangles = {{0, 2, 1}, {0, 1, 3}, {0, 3, 2}, {1, 2, 3}};
+  cube.patch = {0, 0, 0, 1};
+  cube.patch_names = {"", "lid", "of no triangle"};
+  cube.sides.assign(4, {kNone, 1});
+  cube.region_names = {"air", "bone"};
+  for (const char* good : {"g=patches:lid,bone", "g=patches:lid_plus", "g=patches:3", "g=bone"})
+    EXPECT_NO_THROW(check_group(cube, group_rule(good))) << good;
+  for (const char* bad : {"g=patches:lib", "g=patches:lid,of no triangle"})
+    EXPECT_THROW(check_group(cube, group_rule(bad)), OptionError) << bad;
+}
+
+TEST(AddBins, DividesTheRangeOfAField) {
+  TetMesh mesh = testing::rich_mesh(2);
+  mesh.sets.clear();
+  MeshField field{"E", true, 1, std::vector<double>(mesh.tets.size(), 10)};
+  field.values[3] = 0, field.values[4] = 4, field.values[5] = 100;
+  const auto bins = add_bins(mesh, field, 10);
+  ASSERT_EQ(bins.size(), 3u);
+  EXPECT_EQ(bins[0].set, "E_01");
+  EXPECT_EQ(bins[0].elements, 2u);
+  EXPECT_EQ(bins[0].mean, 2);
+  EXPECT_EQ(bins[1].set, "E_02");
+  EXPECT_EQ(bins[2].set, "E_10");
+  EXPECT_EQ(bins[2].most, 100);
+  EXPECT_EQ(mesh.sets[0].members, (std::vector<std::uint32_t>{3, 4}));
+  EXPECT_EQ(mesh.sets[2].members, (std::vector<std::uint32_t>{5}));
+  field.values.assign(mesh.tets.size(), 7);
+  EXPECT_EQ(add_bins(mesh, field, 3).size(), 1u);
 }
 
 TEST(PatchCurves, AreWherePatchesMeet) {

@@ -137,6 +137,15 @@ TEST_F(Intake, AnImageIsOneOfItsRegionsAndKnowsItsVoxels) {
   EXPECT_EQ(part.voxels, (std::array<std::uint32_t, 3>{6, 10, 4}));
   EXPECT_EQ(part.voxel_spacing, 1);
   EXPECT_EQ(part.volumes.size(), 1u);
+  double cut = 0;  // 6 x 4 voxels of 1 x .5
+  for (std::size_t t = 0; t < part.surface.triangles.size(); ++t) {
+    const auto& [a, b, c] = part.surface.triangles[t];
+    const auto& p = part.surface.points;
+    if (part.surface.patch_names[part.surface.patch[t]] == "box_i1") cut += length(cross(p[b] - p[a], p[c] - p[a])) / 2;
+  }
+  EXPECT_NEAR(cut, 6 * 4 * .5, 2);  // smoothed
+  EXPECT_EQ(part.surface.patch_names, (std::vector<std::string>{"label 1", "box_i1"}));
+  EXPECT_TRUE(domain.surface.patch.empty());  // nothing reaches the edge
   options.image.resample = {1, 2};
   EXPECT_THROW(open_domain(image, options), OptionError);
 }

@@ -29,6 +29,13 @@ std::vector<MeshField> some_fields() {
           {"rho", true, 1, {0.25, -3}}};
 }
 
+/// Some formats need HDF5.
+bool is_known(std::string_view format) {
+  for (const FormatInfo& info : known_formats())
+    if (info.name == format && info.writes_mesh) return true;
+  return false;
+}
+
 class FieldFiles : public ::testing::Test {
  protected:
   std::string path_of(const std::string& name) const { return (folder_ / name).string(); }
@@ -46,17 +53,19 @@ TEST_F(FieldFiles, WhatIsWrittenIsReadAgain) {
   struct Case {
     std::string name, format;
     bool ascii;
-    std::size_t fields;  // the reader of MSH takes single numbers
+    std::size_t fields;  // the readers of MSH and XDMF take single numbers
   };
-  for (const Case& c : {Case{"a.vtu", "", false, 3}, Case{"t.vtu", "", true, 3}, Case{"a.vtk", "", false, 3},
-                        Case{"t.vtk", "", true, 3}, Case{"a.msh", "", false, 2}, Case{"t.msh", "", true, 2},
-                        Case{"b.msh", "msh22", false, 2}, Case{"c.msh", "msh22", true, 2}}) {
+  for (const Case& c :
+       {Case{"a.vtu", "", false, 3}, Case{"t.vtu", "", true, 3}, Case{"a.vtk", "", false, 3},
+        Case{"t.vtk", "", true, 3}, Case{"a.msh", "", false, 2}, Case{"t.msh", "", true, 2},
+        Case{"b.msh", "msh22", false, 2}, Case{"c.msh", "msh22", true, 2}, Case{"a.xdmf", "", false, 2}}) {
+    if (c.name.ends_with("xdmf") && !is_known("xdmf")) continue;
     SCOPED_TRACE(c.name + " " + c.format);
     const std::vector<MeshField> fields = some_fields();
     write_mesh(path_of(c.name), pair_of_tets(), fields, {}, {.format = c.format, .ascii = c.ascii});
     const TetMesh mesh = read_mesh(path_of(c.name));
     const FieldsOfFile read = read_fields(path_of(c.name), mesh);
-    EXPECT_TRUE(read.notes.empty());
+    EXPECT_EQ(read.notes.size(), c.name.ends_with("xdmf") ? 1u : 0u);  // which says so of vectors
     ASSERT_EQ(read.fields.size(), c.fields);
     for (const MeshField& field : read.fields) {
       bool found = false;

@@ -176,10 +176,16 @@ TEST(Nrrd, ListsOfValuesAndNamesOfSegments) {
       "Segment0_LabelValue:=3\nSegment0_Layer:=1\nSegment1_Name:=other layer\nSegment1_LabelValue:=3\n"
       "Segment1_Layer:=0\n\n";
   const SmallImage file{"a.seg.nrrd", head + std::string("\1\2\3\4\5\6")};
-  EXPECT_TRUE(contains(input_error([&] { read_small(file); }), "holds 2"));
   const Image image = read_small(file, {2});
   expect_values(image, {2, 4, 6});
   EXPECT_EQ(image.names, (std::vector<LabelName>{{3, "liver"}}));
+  // Without a choice layers of segments are put together, a number for each segment.
+  const Image all = read_small(file);
+  expect_values(all, {0, 2, 0});
+  EXPECT_EQ(all.names, (std::vector<LabelName>{{1, "liver"}, {2, "other layer"}}));
+  EXPECT_TRUE(any_contains(all.notes, "without a voxel: liver"));
+  const SmallImage lists{"a.nrrd", head.substr(0, head.find("Segment0")) + "\n" + std::string("\1\2\3\4\5\6")};
+  EXPECT_TRUE(contains(input_error([&] { read_small(lists); }), "holds 2"));
 }
 
 struct BadImage {

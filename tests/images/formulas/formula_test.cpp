@@ -3,6 +3,7 @@
 
 #include "images/formulas/formulas.h"
 
+#include <array>
 #include <cmath>
 #include <memory>
 #include <numbers>
@@ -31,6 +32,19 @@ TEST(Formula, FollowsTheRulesOfArithmetic) {
   EXPECT_EQ(value("min(3, 1, 2) + max(3, 1, 2, 5)"), 6);
   EXPECT_EQ(value("x + 10 * y", {1, 2, 0}), 21);
   EXPECT_EQ(value("L * 2", {}, 5), 10);
+}
+
+TEST(Formula, TakesFurtherVariables) {
+  const Formula law("rho ^ 2 + x * HU", 1, {"HU", "rho"});
+  EXPECT_EQ(law.at({2, 0, 0}, std::array{10.0, 3.0}), 29);
+  EXPECT_THROW(Formula("rho", 1, {"HU"}), OptionError);
+  TetMesh mesh;
+  mesh.points = {{0, 0, 0}, {4, 0, 0}, {0, 4, 0}, {0, 0, 4}};
+  mesh.tets = {{0, 1, 2, 3}};
+  const std::vector<MeshField> fields{{"HU", true, 1, {5}}, {"HU", false, 1, {1, 2, 3, 4}}};
+  EXPECT_EQ(field_by_formula(mesh, "E", "HU + x", fields, true).values, (std::vector<double>{6}));
+  EXPECT_EQ(field_by_formula(mesh, "E", "HU + x", fields, false).values, (std::vector<double>{1, 6, 3, 4}));
+  EXPECT_THROW(field_by_formula(mesh, "E", "log(HU - 2)", fields, false), OptionError);
 }
 
 TEST(Formula, KnowsFunctions) {

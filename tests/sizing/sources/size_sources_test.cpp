@@ -5,6 +5,7 @@
 #include "sizing/sources/check_size_options.h"
 #include "sizing/sources/kept_surface.h"
 #include "sizing/sources/surface_samples.h"
+#include "support/labelled_walls.h"
 #include "support/named_surfaces.h"
 
 #include <algorithm>
@@ -120,6 +121,28 @@ TEST(SizeField, AutomaticSizesSeeWallsButNoGapsBetweenThem) {
   EXPECT_EQ(gap.at({1, 1, 1}), gap.max_size());
   const SizeField wall = sizes_of(box(2, 2, 0.05, 1), {});
   EXPECT_NEAR(wall.at({1, 1, 0.05}), 0.05, 0.01);
+}
+
+TEST(SizeField, ARegionHasSizesByItsThickness) {
+  // A box 2 thick under one that is 10 thick: faces of the thin one ask for half of 2, of the thick one for 4 at most.
+  testing::GridPlanes planes{{}, {}, {0, 2, 12}};
+  for (int i = 0; i <= 20; ++i) planes.x.push_back(i), planes.y.push_back(i);
+  SurfaceMesh two = testing::box_walls(planes, [](Vec3 middle) { return middle.z < 2 ? 0u : 1u; });
+  two.region_names = {"thin", "thick"};
+  SizeOptions o;
+  o.size = 30;
+  o.gradation = .5;
+  o.named = {{"thin", .5, .5, 5}, {"thick", .5, .5, 4}};
+  const SizeField field = sizes_of(two, o);
+  EXPECT_NEAR(field.at({10, 10, 0}), 1, .3);
+  EXPECT_NEAR(field.at({10, 10, 12}), 4, .5);
+  EXPECT_LE(field.at({10, 10, 7}), 4.01);
+  o.named[0].most = .7;
+  EXPECT_NEAR(sizes_of(two, o).at({10, 10, 0}), .7, .2);
+  o.named = {{"box:0,0,0,1,1,1", .5, .5, 5}};
+  EXPECT_THROW(sizes_of(two, o), OptionError);
+  o.named = {{"thin", 2, .5, 1}};
+  EXPECT_THROW(sizes_of(two, o), OptionError);
 }
 
 TEST(SizeField, EdgesAreNoGaps) {

@@ -2,6 +2,8 @@
 
 #include "images/files/dicom/elements.h"
 
+#include <octafront/error.h>
+
 #include <algorithm>
 #include <array>
 #include <cstring>
@@ -22,8 +24,7 @@ struct KnownSyntax {
   std::string_view uid, name;
 };
 /// Those whose pixels are not read, by their names.
-constexpr std::array kUnread{KnownSyntax{"1.2.840.10008.1.2.1.99", "Deflated Explicit VR Little Endian"},
-                             KnownSyntax{"1.2.840.10008.1.2.4.50", "JPEG Baseline"},
+constexpr std::array kUnread{KnownSyntax{"1.2.840.10008.1.2.4.50", "JPEG Baseline"},
                              KnownSyntax{"1.2.840.10008.1.2.4.51", "JPEG Extended"},
                              KnownSyntax{"1.2.840.10008.1.2.4.57", "JPEG Lossless"},
                              KnownSyntax{"1.2.840.10008.1.2.4.70", "JPEG Lossless, first-order prediction"},
@@ -45,7 +46,7 @@ Syntax syntax_of(std::string_view uid) {
   Syntax other{std::string(uid), fmt::format("the unknown transfer syntax {}", io::in_quotes(uid))};
   other.is_readable = false;
   for (const KnownSyntax& known : kUnread)
-    if (uid == known.uid) other.name = known.name;
+    if (uid == known.uid) other.name = known.name, other.is_jpeg = !known.name.starts_with("High");
   return other;
 }
 
@@ -67,13 +68,15 @@ class DicomParser {
   DicomParser(const io::Input& input, const Visit& visit) : input_(input), visit_(visit), progress_(input) {}
 
   Syntax parse() {
-    const bool has_preamble = input_.bytes.size() > kPreamble + 4 && input_.bytes.substr(kPreamble, 4) == "DICM";
-    at_ = has_preamble ? kPreamble + 4 : 0;
-    read_meta();
+    read_head();
     syntax_ = uid_.empty() ? guessed() : syntax_of(uid_);
-    // Pixels of unknown kinds stand in explicit elements too, but not what is deflated as a whole.
-    if (syntax_.uid != "1.2.840.10008.1.2.1.99") read_until(input_.bytes.size(), syntax_.is_explicit, 0);
+    read_until(input_.bytes.size(), syntax_.is_explicit, 0);
     return syntax_;
+  }
+
+  std::size_t deflated_data() {
+    read_head();
+    return uid_ == "1.2.840.10008.1.2.1.99" ? at_ : 0;
   }
 
  private:
@@ -105,6 +108,12 @@ class DicomParser {
     const std::string_view value = input_.bytes.substr(at_, length);
     at_ += length;
     return value;
+  }
+
+  void read_head() {
+    const bool has_preamble = input_.bytes.size() > kPreamble + 4 && input_.bytes.substr(kPreamble, 4) == "DICM";
+    at_ = has_preamble ? kPreamble + 4 : 0;
+    read_meta();
   }
 
   /// Group 2 is always explicit and little endian; it names the syntax of the rest.
@@ -162,7 +171,8 @@ class DicomParser {
     if (vr == "SQ" || length == kUndefined) return read_sequence(id, length, is_explicit && vr != "UN", depth);
     // Implicit sequences of known length look like any value; only these are of use.
     const bool is_groups = id == tag(0x5200, 0x9229) || id == tag(0x5200, 0x9230) || id == tag(0x0020, 0x9113) ||
-                           id == tag(0x0020, 0x9116) || id == tag(0x0028, 0x9110) || id == tag(0x0028, 0x9145);
+                           id == tag(0x0020, 0x9116) || id == tag(0x0028, 0x9110) || id == tag(0x0028, 0x9145) ||
+                           id == tag(0x0062, 0x0002) || id == tag(0x0062, 0x000a);
     if (!is_explicit && is_groups) return read_sequence(id, length, false, depth);
     visit_(levels_, {id, take(length)});
   }
@@ -214,6 +224,14 @@ bool is_dicom(std::string_view head) {
   const bool is_explicit = is_letter(head[4]) && is_letter(head[5]);
   const bool is_implicit = head[5] == '\0' && head[6] == '\0' && head[7] == '\0';
   return is_explicit || is_implicit;
+}
+
+std::size_t deflated_data_in(std::string_view bytes) {
+  try {
+    return DicomParser({"", bytes}, {}).deflated_data();
+  } catch (const InputError&) {
+    return 0;  // who reads all of it says what is wrong
+  }
 }
 
 Syntax for_each_element(const io::Input& input,

@@ -23,6 +23,7 @@ struct Syntax {
   bool is_explicit = true, big_endian = false;
   bool is_rle = false;
   bool is_readable = true;  ///< false: pixels in a way that is not read here
+  bool is_jpeg = false;     ///< of the JPEG families, which unpacked() of unpack.h makes readable
 };
 
 /// A sequence that an element lies in, and the item of it, counted from 0.
@@ -41,6 +42,9 @@ struct Element {
 
 /// Whether bytes begin as DICOM files do, with the preamble or without.
 bool is_dicom(std::string_view head);
+
+/// Where the data begin of a file that is deflated as a whole; 0: it is not.
+std::size_t deflated_data_in(std::string_view bytes);
 
 /// Calls visit(levels, element) for every element of a file that holds a value, in order; sequences are gone through.
 /// Returns how they are written. Throws InputError with the byte for a file that is damaged.

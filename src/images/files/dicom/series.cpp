@@ -6,6 +6,8 @@
 #include "base/core/parallel.h"
 #include "base/core/thread_limit.h"
 #include "base/core/wording.h"
+#include "images/files/dicom/segmentation.h"
+#include "images/files/dicom/unpack.h"
 #include "images/files/grids.h"
 
 #include <algorithm>
@@ -39,6 +41,11 @@ struct Volume {
 
 Vec3 normal_of(const Slice& s) {
   return cross(s.directions[0], s.directions[1]);
+}
+
+/// Its headers can be parsed.
+KeptFile opened(const SliceFiles& files, std::size_t f) {
+  return inflated(files.open(f));
 }
 
 bool same_plane(const Slice& a, const Slice& b) {
@@ -78,8 +85,8 @@ class Collector {
 
  private:
   void add(std::size_t f) {
-    const KeptFile kept = files_.open(f);
     try {
+      const KeptFile kept = opened(files_, f);
       const SliceFile file = parse_slices(kept.input);
       refuse_pixels(kept.input, file);
       for (Slice slice : file.slices) {
@@ -264,6 +271,19 @@ bool is_whole(double x) {
   return x == std::floor(x) && std::abs(x) < 0x1p31;
 }
 
+/// The files of several frames that have to be unpacked, each once, by their numbers.
+std::map<std::uint32_t, KeptFile> unpacked_files(const Volume& volume, const SliceFiles& files) {
+  std::map<std::uint32_t, std::size_t> frames;
+  for (const Slice& s : volume.slices) ++frames[s.file];
+  std::map<std::uint32_t, KeptFile> all;
+  for (const auto& [f, n] : frames) {
+    if (n == 1) continue;
+    const KeptFile kept = opened(files, f);
+    if (!parse_slices(kept.input).syntax.is_readable) all[f] = unpacked(kept);
+  }
+  return all;
+}
+
 /// The voxels of a volume, each file read once more.
 Image::Values values_of(const Volume& volume, const SliceFiles& files, const RunContext& context,
                         std::vector<std::string>& notes) {
@@ -272,15 +292,22 @@ Image::Values values_of(const Volume& volume, const SliceFiles& files, const Run
   for (const Slice& s : volume.slices) whole = whole && is_whole(s.slope) && is_whole(s.intercept);
   std::vector<std::int32_t> numbers(whole ? each * volume.slices.size() : 0);
   std::vector<float> reals(whole ? 0 : each * volume.slices.size());
+  const std::map<std::uint32_t, KeptFile> ready = unpacked_files(volume, files);
   // Frames of one file lie behind one another in the order of places: the same file is opened for each.
   parallel_for(
       volume.slices.size(),
       [&](std::size_t k) {
         context.check();
         const Slice& s = volume.slices[k];
-        const KeptFile kept = files.open(s.file);
+        const auto found = ready.find(s.file);
+        KeptFile kept = found != ready.end() ? found->second : opened(files, s.file);
+        SliceFile file = parse_slices(kept.input);
+        if (!file.syntax.is_readable) {
+          kept = unpacked(kept);
+          file = parse_slices(kept.input);
+        }
         std::vector<std::int32_t> stored(each);
-        read_pixels(kept.input, parse_slices(kept.input), s, stored.data());
+        read_pixels(kept.input, file, s, stored.data());
         for (std::size_t i = 0; i < each; ++i) {
           const double v = s.slope * stored[i] + s.intercept;
           if (whole) {
@@ -297,13 +324,18 @@ Image::Values values_of(const Volume& volume, const SliceFiles& files, const Run
   return narrowed(numbers, notes);
 }
 
-/// A frame takes a byte per 64 pixels at least: nothing is allocated for what no file can hold.
+/// A frame takes a byte per 64 pixels at least: nothing is allocated for what no file can hold. What the JPEG families
+/// pack, where a slice of air is a few bytes, is compared with the memory that there is.
 void check_room(const Volume& volume, const SliceFiles& files) {
   const std::uint64_t each = std::uint64_t{volume.slices[0].size[0]} * volume.slices[0].size[1];
   std::map<std::uint32_t, std::uint64_t> frames;
   for (const Slice& s : volume.slices) ++frames[s.file];
   for (const auto& [f, n] : frames) {
-    const KeptFile kept = files.open(f);
+    const KeptFile kept = opened(files, f);
+    if (!parse_slices(kept.input).syntax.is_readable) {
+      require_memory_for(kept.input, each * volume.slices.size(), VoxelType::kInt32);
+      continue;
+    }
     if (each * n > 64 * std::uint64_t{kept.input.bytes.size()})
       kept.input.fail(fmt::format(
           "claims {} of {} x {} pixels, more than its {} bytes can hold; it is truncated or damaged",
@@ -325,7 +357,7 @@ Image read_series(const SliceFiles& files, const ImageChoice& choice, const RunC
   image.unit = "mm";
   image.frame = "LPS";
   image.grid = Stack(volume, files).grid(image.notes);
-  const KeptFile first = files.open(volume.slices[0].file);
+  const KeptFile first = opened(files, volume.slices[0].file);
   checked_sizes(first.input, {image.grid.size[0], image.grid.size[1], image.grid.size[2]});
   check_grid(first.input, image.grid);
   context.report("reading", 0.5);
@@ -334,7 +366,10 @@ Image read_series(const SliceFiles& files, const ImageChoice& choice, const RunC
 }
 
 Image read_dicom(const Reading& reading) {
-  const SliceFiles one{{reading.input.name}, [&](std::size_t) { return KeptFile{reading.input, nullptr}; }};
+  const KeptFile plain = inflated({reading.input, nullptr});
+  if (const SliceFile file = parse_slices(plain.input); file.is_segmentation())
+    return read_segmentation(plain.input, file);
+  const SliceFiles one{{reading.input.name}, [&](std::size_t) { return plain; }};
   try {
     return read_series(one, reading.choice, reading.input.context);
   } catch (const InputError& error) {
@@ -362,8 +397,6 @@ std::vector<std::string> dicom_files_in(const std::string& folder, const RunCont
     if (is_dicom({head.data(), static_cast<std::size_t>(stream.gcount())})) files.push_back(it->path().string());
   }
   if (error) throw InputError(fmt::format("{}: cannot be read: {}", folder, error.message()));
-  if (files.empty())
-    throw InputError(fmt::format("{}: is a folder without DICOM files; other images are given by their file", folder));
   std::sort(files.begin(), files.end());
   return files;
 }

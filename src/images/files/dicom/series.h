@@ -25,7 +25,7 @@ Image read_series(const SliceFiles& files, const ImageChoice& choice, const RunC
 /// Of one file.
 Image read_dicom(const Reading& reading);
 
-/// The DICOM files in a folder and those inside it, in order of their names. Throws InputError if there are none.
+/// The DICOM files in a folder and those inside it, in order of their names.
 std::vector<std::string> dicom_files_in(const std::string& folder, const RunContext& context);
 
 }  // namespace octafront::image

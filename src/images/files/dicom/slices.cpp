@@ -1,6 +1,7 @@
 #include "images/files/dicom/slices.h"
 
 #include "formats/containers/scanner.h"
+#include "images/files/dicom/unpack.h"
 
 #include <algorithm>
 #include <cmath>
@@ -13,6 +14,7 @@
 namespace octafront::image {
 namespace {
 
+constexpr Tag kSegments = tag(0x0062, 0x0002);
 constexpr Tag kShared = tag(0x5200, 0x9229), kPerFrame = tag(0x5200, 0x9230);
 
 std::string_view trimmed(std::string_view text) {
@@ -64,6 +66,8 @@ class SliceParser {
         const std::uint32_t frame = levels[0].item;
         if (frames_.size() <= frame) frames_.resize(frame + 1);
         frames_[frame][element.id] = element.value;
+      } else if (levels[0].sequence == kSegments && levels.size() == 1) {
+        add_to_segment(levels[0].item, element);
       }
     });
     describe();
@@ -72,6 +76,14 @@ class SliceParser {
   }
 
  private:
+  void add_to_segment(std::uint32_t item, const Element& element) {
+    if (file_.segments.size() <= item) file_.segments.resize(item + 1);
+    Segment& segment = file_.segments[item];
+    // The syntax is known when all is read; segments' numbers are small, and little endian everywhere.
+    if (element.id == tag(0x0062, 0x0004)) segment.number = short_of(element.value, false);
+    if (element.id == tag(0x0062, 0x0005)) segment.name = trimmed(element.value);
+  }
+
   void visit_top(const Element& element) {
     if (element.id != tag(0x7fe0, 0x0010)) {
       top_[element.id] = element.value;
@@ -103,6 +115,7 @@ class SliceParser {
     if (file_.format.bits_stored == 0) file_.format.bits_stored = file_.format.bits_allocated;
     file_.format.high_bit =
         top_.contains(tag(0x0028, 0x0102)) ? number(tag(0x0028, 0x0102)) : file_.format.bits_stored - 1;
+    if (const std::uint32_t most = number(tag(0x0062, 0x000e)); most > 0) file_.most = most;
     file_.format.is_signed = number(tag(0x0028, 0x0103)) == 1;
   }
 
@@ -137,6 +150,14 @@ class SliceParser {
     return text(id);
   }
 
+  /// As they are: of numbers in binary.
+  std::string_view own_bytes(std::uint32_t frame, Tag id) const {
+    if (frame < frames_.size())
+      if (const auto own = frames_[frame].find(id); own != frames_[frame].end()) return own->second;
+    const auto all = common_.find(id);
+    return all == common_.end() ? std::string_view() : all->second;
+  }
+
   Slice slice(std::uint32_t frame) const {
     Slice s;
     s.frame = frame;
@@ -151,6 +172,7 @@ class SliceParser {
     const std::vector<double> intercept = numbers_of(value(frame, tag(0x0028, 0x1052)));
     if (!slope.empty() && slope[0] != 0) s.slope = slope[0];
     if (!intercept.empty()) s.intercept = intercept[0];
+    s.segment = short_of(own_bytes(frame, tag(0x0062, 0x000b)), file_.syntax.big_endian);
     return s;
   }
 
@@ -235,15 +257,13 @@ SliceFile parse_slices(const io::Input& input) {
 }
 
 void refuse_pixels(const io::Input& input, const SliceFile& file) {
-  if (file.sop_class.starts_with("1.2.840.10008.5.1.4.1.1.66.4") || file.format.bits_allocated == 1)
+  if (file.is_segmentation()) input.fail("is a DICOM segmentation, not a slice of an image; give it alone");
+  if (!file.syntax.is_readable && !(file.syntax.is_jpeg && has_gdcm()))
     input.fail(
-        "is a DICOM segmentation with a bit per pixel, which is not read here; export the segmentation as NIfTI or "
-        "NRRD");
-  if (!file.syntax.is_readable)
-    input.fail(fmt::format(
-        "its pixels are written as {}, which is not read here; convert it to an uncompressed syntax (dcmdjpeg, "
-        "gdcmconv --raw)",
-        file.syntax.name));
+        fmt::format("its pixels are written as {}, which {}; convert it to an uncompressed syntax (dcmdjpeg, "
+                    "gdcmconv --raw){}",
+                    file.syntax.name, "is not read here",
+                    file.syntax.is_jpeg ? ", or build octafront with libgdcm-dev installed" : ""));
   if (!file.has_pixels)
     input.fail(fmt::format("holds no pixels (modality {}): it is no image", io::in_quotes(file.modality)));
   if (file.samples != 1)

@@ -22,6 +22,13 @@ struct Slice {
   std::array<double, 2> spacing{};   ///< of pixels along a row, and along a column
   double thickness = 0;              ///< or the distance of slices, if the file says it; 0: neither
   double slope = 1, intercept = 0;
+  std::int64_t segment = 0;  ///< of a segmentation: the number of what the frame shows
+};
+
+/// A segment of a segmentation.
+struct Segment {
+  std::int64_t number = 0;
+  std::string name;
 };
 
 /// How pixels are stored.
@@ -39,9 +46,13 @@ struct SliceFile {
   PixelFormat format;
   std::uint32_t samples = 1;
   std::vector<Slice> slices;  ///< one per frame
-  std::string_view pixels;    ///< native ones; refers to the bytes of the file
+  std::vector<Segment> segments;
+  std::uint32_t most = 1;   ///< of a segmentation of parts of voxels: what a whole voxel has
+  std::string_view pixels;  ///< native ones; refers to the bytes of the file
   std::vector<std::string_view> fragments;
   bool has_pixels = false;
+
+  bool is_segmentation() const { return sop_class.starts_with("1.2.840.10008.5.1.4.1.1.66.4"); }
 };
 
 /// Throws InputError for damaged files; what is not read here (is_readable, samples, no pixels) is told by

@@ -1,4 +1,4 @@
-#include "images/labels/contacts.h"
+#include "images/labels/small_contacts.h"
 
 #include "base/core/disjoint_sets.h"
 #include "base/core/elementary.h"
@@ -199,8 +199,8 @@ class NarrowParts {
   static constexpr Index kRow = 64;
   const Faces& faces_;
   std::uint32_t reach_;
-  std::vector<Face> face_;             ///< ascending
-  std::vector<std::uint32_t> first_;   ///< the first face of every kRow voxels
+  std::vector<Face> face_;            ///< ascending
+  std::vector<std::uint32_t> first_;  ///< the first face of every kRow voxels
   std::vector<std::uint8_t> from_line_, from_wide_;
 };
 
@@ -296,10 +296,13 @@ class Clearing {
 
   /// Whether what gives voxels stays, and stays in one piece in the box around them where it was.
   bool is_allowed(const Move& move) {
+    if (!joins(move)) return false;
     if (move.from == LabelImage::kNoRegion) return true;
     if (kMostLost * static_cast<double>(voxels_of_[move.from]) < static_cast<double>(move.voxels.size())) return false;
     return !cuts(move);
   }
+  /// Whether all that is given hangs together with what gets it.
+  bool joins(const Move& move) const;
   bool cuts(const Move& move) const;
   void count(const Move& move) {
     if (move.from != LabelImage::kNoRegion) voxels_of_[move.from] -= move.voxels.size();
@@ -312,6 +315,23 @@ class Clearing {
   std::vector<bool> changed_;
   std::vector<std::uint64_t> voxels_of_;
 };
+
+bool Clearing::joins(const Move& move) const {
+  std::vector<std::uint8_t> joined(move.voxels.size(), 0);
+  const auto is_joined = [&](Index v) {
+    if (faces_.label(v) == move.to) return true;
+    const auto it = std::lower_bound(move.voxels.begin(), move.voxels.end(), v);
+    return it != move.voxels.end() && *it == v && joined[static_cast<std::size_t>(it - move.voxels.begin())] != 0;
+  };
+  for (bool grew = true; grew;) {
+    grew = false;
+    for (std::size_t n = 0; n < joined.size(); ++n)
+      for (int a = 0; a < 3 && joined[n] == 0; ++a)
+        if (is_joined(move.voxels[n] - faces_.step(a)) || is_joined(move.voxels[n] + faces_.step(a)))
+          joined[n] = 1, grew = true;
+  }
+  return std::ranges::all_of(joined, [](std::uint8_t j) { return j != 0; });
+}
 
 bool Clearing::cuts(const Move& move) const {
   // The voxels of the label beside those that go, and whether these hang together without them: within one layer more.
