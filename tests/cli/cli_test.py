@@ -274,10 +274,11 @@ class CommandLine(unittest.TestCase):
             found = json.loads(self.run_cli("mesh", file, "--size", 12, "-o", self.dir / "b.vtu", "--json", "-").stdout)
             self.assertLess(abs(found["volume"] / found["input_volume"] - 1), 0.02, file.name)
 
-    def test_a_group_of_nothing_is_said_under_quiet_too(self):
-        done = self.run_cli("mesh", self.part, "-q", "-o", self.dir / "a.vtu", "--group", "g=patches:none")
+    def test_a_group_of_a_patch_that_is_not_there_is_refused(self):
+        done = self.run_cli("mesh", self.part, "-q", "-o", self.dir / "a.vtu", "--group", "g=patches:none", status=2)
         self.assertEqual(done.stdout, "")
         self.assertIn('there is no patch "none"', done.stderr)
+        self.assertFalse((self.dir / "a.vtu").exists())
 
     def test_parts_for_structures_hear_of_second_order(self):
         program = pathlib.Path(OCTAFRONT).parent / "../cad/octafront-cad"
