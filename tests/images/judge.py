@@ -61,7 +61,11 @@ def judge_dicom(octafront, path, pydicom, numpy):
     data = pydicom.dcmread(path, force=True)
     if found is None:
         return None if len(refused) > 40 else f"refused without a reason: {refused}"
-    values = data.pixel_array * float(data.get("RescaleSlope", 1)) + float(data.get("RescaleIntercept", 0))
+    try:
+        pixels = data.pixel_array
+    except (RuntimeError, NotImplementedError):
+        return None  # compressed, and pydicom alone reads none of that
+    values = pixels * float(data.get("RescaleSlope", 1)) + float(data.get("RescaleIntercept", 0))
     if list(found["size"][:2]) != [data.Columns, data.Rows]:
         return f"size {found['size']}"
     if "ImagePositionPatient" in data and not numpy.allclose(found["origin"], data.ImagePositionPatient):
