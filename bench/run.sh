@@ -69,7 +69,7 @@ need_packages "${build_packages[@]}" python3
 { [ "$1" != inside ] && [ "$1" != periodic ]; } || need_packages python3-numpy python3-meshio python3-gmsh tetgen
 [ "$1" != layers_peers ] || need_packages python3-gmsh
 [ "$1" != images ] || need_packages libcgal-dev libgmp-dev libmpfr-dev libboost-dev
-[ "$1" != images_needed ] || need_packages python3-numpy python3-meshio python3-nibabel
+[ "$1" != images_needed ] || need_packages python3-numpy python3-nibabel
 [[ $1 != images* ]] || [ -d volumes ] || bench/models/get-volumes.sh
 [ "$1" = formats ] || [ "$1" = ranks ] || [ "$1" = adapt ] || [ "$1" = complexes ] || [[ $1 = images* ]] || [ "$1" = thin ] || [ "$1" = cad ] || [ "$1" = answers ] || [ -d models/clean ] || bench/models/get-models.sh --ct
 tests=OFF
@@ -93,6 +93,7 @@ cmake --build --preset release --target octafront_cli octafront_evaluate octafro
 [ "$1" != repair ] || cmake --build --preset release --target octafront_judge_repair
 { [ "$1" != peers ] && [ "$1" != experiments ]; } || cmake --build --preset release --target peer_cgal_mesh || echo "without CGAL's mesher" >&2
 [ "$1" != images ] || cmake --build --preset release --target octafront_judge_image peer_cgal_labels
+[ "$1" != images_needed ] || cmake --build --preset release --target octafront_judge_image
 [[ $1 != layers_* ]] || [ -d models/flows ] || bench/models/get-flows.sh build/release/cli/octafront
 python=python3
 [ "$1" != repair ] && [ "$1" != known_answers ] && [ "$1" != damage ] && [ "$1" != images_needed ] || python=/usr/bin/python3  # Debian's, with its NumPy

@@ -1,5 +1,7 @@
 #include <octafront/named_groups.h>
 
+#include "base/geometry/measures.h"
+
 #include <algorithm>
 #include <numeric>
 #include <string>
@@ -11,8 +13,7 @@ namespace {
 
 double volume_of(const TetMesh& mesh, std::size_t t) {
   const auto& [a, b, c, d] = mesh.tets[t];
-  const Vec3 o = mesh.points[a];
-  return dot(mesh.points[b] - o, cross(mesh.points[c] - o, mesh.points[d] - o)) / 6;
+  return signed_volume(mesh.points[a], mesh.points[b], mesh.points[c], mesh.points[d]);
 }
 
 void add_element(FieldBin& bin, double value, double volume) {

@@ -98,7 +98,8 @@ Image image_of_masks(const std::vector<std::string>& files, const std::function<
   Image all = read(files.front());
   Union labels(all.grid.voxels());
   for (std::size_t f = 0; f < files.size(); ++f) {
-    const Image mask = read(files[f]);
+    const Image further = f == 0 ? Image{} : read(files[f]);
+    const Image& mask = f == 0 ? all : further;
     require_mask(mask, files[f]);
     if (!same_grid(all.grid, mask.grid) || all.frame != mask.frame)
       throw InputError(fmt::format("{}: has other voxels than {}; masks lie on one grid", files[f], files.front()));

@@ -5,6 +5,7 @@
 #include "base/core/parallel.h"
 #include "base/core/thread_limit.h"
 #include "base/core/wording.h"
+#include "base/geometry/measures.h"
 
 #include <algorithm>
 #include <array>
@@ -142,7 +143,7 @@ void even_in_wide_cells(const TetMesh& mesh, std::vector<double>& values) {
     double sum = 0, volume = 0;
     for (std::size_t t = cell.first; t < cell.first + cell.tet_count; ++t) {
       const Corners c = corners_of(mesh, t);
-      const double part = dot(c[1] - c[0], cross(c[2] - c[0], c[3] - c[0]));
+      const double part = six_volumes(c[0], c[1], c[2], c[3]);
       sum += values[t] * part, volume += part;
     }
     std::fill_n(values.begin() + cell.first, cell.tet_count, sum / volume);
@@ -155,7 +156,7 @@ void sample(const TetMesh& mesh, const Sampler<T>& sampler, ImageSamples& sample
   parallel_for(mesh.tets.size(), [&](std::size_t t) {
     const Corners c = corners_of(mesh, t);
     samples.of_elements.values[t] = sampler.mean(c);
-    outside[t] = !sampler.holds((c[0] + c[1] + c[2] + c[3]) * .25);
+    outside[t] = !sampler.holds(centroid(c[0], c[1], c[2], c[3]));
   });
   parallel_for(mesh.points.size(),
                [&](std::size_t v) { samples.at_points.values[v] = sampler.linear(mesh.points[v]); });
