@@ -170,8 +170,8 @@ struct CleanOptions {
 /// closing with an octahedron of `closing` voxels), the first region's where several are. Islands and holes go to the
 /// region, or the outside, that has most faces with them. The largest piece of each region stays whatever its size: no
 /// region is lost. A contact is cleared by the layer of voxels on one of its sides, if that shortens the lines where
-/// three regions meet, cuts no region in two there and takes at most a twentieth of one. What was done is in the notes
-/// of the result. The same bits on any number of threads.
+/// three regions meet, cuts no region in two there, and all together change none by more than 1 % or a voxel. What was
+/// done is in the notes of the result. The same bits on any number of threads.
 LabelImage cleaned(const LabelImage& image, const CleanOptions& options, const RunContext& context = no_context());
 
 /// A disc on the skin.

@@ -212,10 +212,11 @@ struct Move {
 
 class Clearing {
  public:
-  Clearing(Faces& faces, const LabelImage& image) : faces_(faces), changed_(faces.size(), false) {
-    voxels_of_.assign(image.labels.size(), 0);
+  Clearing(Faces& faces, const LabelImage& image)
+      : faces_(faces), changed_(faces.size(), false), size_of_(image.labels.size()) {
     for (const std::uint16_t r : image.regions)
-      if (r != LabelImage::kNoRegion) ++voxels_of_[r];
+      if (r != LabelImage::kNoRegion) ++size_of_[r].first;
+    for (Size& size : size_of_) size.now = size.first;
   }
 
   /// Clears the spot by the move that shortens lines most; how many voxels it took, 0 if none does.
@@ -296,24 +297,34 @@ class Clearing {
 
   /// Whether what gives voxels stays, and stays in one piece in the box around them where it was.
   bool is_allowed(const Move& move) {
-    if (!joins(move)) return false;
+    const auto voxels = static_cast<double>(move.voxels.size());
+    if (changes_much(move.from, -voxels) || changes_much(move.to, voxels) || !joins(move)) return false;
     if (move.from == LabelImage::kNoRegion) return true;
-    if (kMostLost * static_cast<double>(voxels_of_[move.from]) < static_cast<double>(move.voxels.size())) return false;
     return !cuts(move);
+  }
+  /// Whether a region has so many voxels more that its volume is another one.
+  bool changes_much(std::uint16_t region, double more) const {
+    if (region == LabelImage::kNoRegion) return false;
+    const Size& size = size_of_[region];
+    return std::abs(size.now + more - size.first) > std::max(1.0, kMostChanged * size.first);
   }
   /// Whether all that is given hangs together with what gets it.
   bool joins(const Move& move) const;
   bool cuts(const Move& move) const;
   void count(const Move& move) {
-    if (move.from != LabelImage::kNoRegion) voxels_of_[move.from] -= move.voxels.size();
-    if (move.to != LabelImage::kNoRegion) voxels_of_[move.to] += move.voxels.size();
+    const auto voxels = static_cast<double>(move.voxels.size());
+    if (move.from != LabelImage::kNoRegion) size_of_[move.from].now -= voxels;
+    if (move.to != LabelImage::kNoRegion) size_of_[move.to].now += voxels;
   }
 
-  /// A spot takes no more of a region than this part.
-  static constexpr double kMostLost = 0.05;
+  /// All spots together change no region by more than this part, or a voxel.
+  static constexpr double kMostChanged = 0.01;
+  struct Size {
+    double first = 0, now = 0;  ///< voxels
+  };
   Faces& faces_;
   std::vector<bool> changed_;
-  std::vector<std::uint64_t> voxels_of_;
+  std::vector<Size> size_of_;
 };
 
 bool Clearing::joins(const Move& move) const {
