@@ -34,7 +34,7 @@ class RawInflate {
       stream_.avail_out = static_cast<uInt>(out.size() - before);
       if (stream_.avail_in == 0) feed();
       state = inflate(&stream_, Z_NO_FLUSH);
-      out.resize(out.size() - stream_.avail_out);
+      out.erase(out.size() - stream_.avail_out);
       const bool is_stuck = out.size() == before && stream_.avail_in == 0 && left_ == 0;
       if ((state != Z_OK && state != Z_STREAM_END && state != Z_BUF_ERROR) || (state != Z_STREAM_END && is_stuck))
         input_.fail("its deflated data are damaged or truncated: copy or export it again");
