@@ -1033,10 +1033,10 @@ class CommandLine(unittest.TestCase):
     def test_interrupts_end_the_wait_for_a_pipe(self):
         fifo = self.dir / "fifo"
         os.mkfifo(fifo)
-        self.interrupted("check", fifo)
+        self.interrupted("check", fifo, after=1)  # signals count from when the program has begun
         writer = os.open(fifo, os.O_RDWR)
         os.write(writer, b"OFF\n4 4 0\n")
-        self.interrupted("check", fifo)
+        self.interrupted("check", fifo, after=1)
         os.close(writer)
 
     def test_convert_keeps_names_and_says_what_it_cannot(self):
