@@ -67,7 +67,7 @@ bool give_volume_back(Remeshed& made, const Prepared& input, const Run& run, con
   if (std::abs(lost) > kGivenBack || slenderness(input.surface.mesh()) < kSlender) return false;
   SurfaceMesh pressed = made.surface;
   const std::array<double, 1> wanted{run.report.input_volume};
-  surface::keep_volumes_clean(pressed, made.features, wanted, {}, stage.context());
+  surface::keep_volumes_clean(pressed, made.features, wanted, {}, nullptr, stage.context());
   if (is_off(change(pressed))) return false;
   stage.note(fmt::format("the automatic sizes change the volume by {:+.1f} %: vertices were moved to give it back",
                          100 * lost));

@@ -165,12 +165,17 @@ std::vector<double> wanted_volumes(const Prepared& input, const Domain& domain) 
   return wanted;
 }
 
+/// What vertices may leave so that triangles come nearer: not the true geometry.
+static const KnownSurface* fitted(const Prepared& input) {
+  return input.geometry == nullptr ? &input.surface : nullptr;
+}
+
 void keep_surface_volumes(const Prepared& input, Remeshed& made, const Run& run, const Stage& stage) {
   // Opposite faces of a cell stay copies of each other.
   if (!run.options.surface.keep_volumes || !run.options.periodic.empty()) return;
-  const std::uint64_t moved =
-      surface::keep_volumes_clean(made.surface, made.features, volumes_of_regions(input.surface.mesh()),
-                                  vertices_on_faces(made.surface, input.cell), stage.context());
+  const std::vector<double> wanted = input.volumes.empty() ? volumes_of_regions(input.surface.mesh()) : input.volumes;
+  const std::uint64_t moved = surface::keep_volumes_clean(
+      made.surface, made.features, wanted, vertices_on_faces(made.surface, input.cell), fitted(input), stage.context());
   stage.count("vertices moved for volumes", static_cast<double>(moved));
 }
 
@@ -187,8 +192,9 @@ void keep_mesh_volumes(const Prepared& input, const std::vector<double>& wanted,
       std::vector<VertexIndex> back = beside.spoilt();
       return back.empty() ? surface::vertices_in_crossings(surface) : back;
     };
-    const std::uint64_t moved = keep_volumes(surface, filled.boundary.features, wanted, too_far,
-                                             vertices_on_faces(surface, input.cell), stage.context());
+    const std::uint64_t moved =
+        keep_volumes(surface, filled.boundary.features, wanted, too_far, vertices_on_faces(surface, input.cell),
+                     run.options.surface.keep_volumes ? fitted(input) : nullptr, stage.context());
     std::copy(surface.points.begin(), surface.points.end(), filled.mesh.points.begin());
     stage.count("vertices moved for volumes", static_cast<double>(moved));
   });

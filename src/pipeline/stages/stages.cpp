@@ -17,6 +17,7 @@
 #include "improve/schedule/schedule.h"
 #include "improve/shape/slide_interfaces.h"
 #include "improve/shape/slide_pairs.h"
+#include "pipeline/stages/coarse_input.h"
 #include "pipeline/stages/follow_boundary.h"
 #include "pipeline/stages/kept_shape.h"
 #include "pipeline/stages/kept_volumes.h"
@@ -371,6 +372,12 @@ Prepared prepare(const Domain& domain, Run& run) {
     Prepared prepared = prepare_aperiodic(periodic->domain, run);
     prepared.cell = std::move(periodic->cell);
     find_faces_of_patches(prepared.surface.mesh(), prepared.cell);
+    return prepared;
+  }
+  if (const std::optional<Domain> coarse = coarse_domain(domain, run)) {
+    Prepared prepared = prepare_aperiodic(*coarse, run);
+    if (!prepared.volumes.empty()) prepared.volumes = volumes_of_regions(domain.surface);
+    run.report.input_volume = enclosed_volume(domain.surface);
     return prepared;
   }
   return prepare_aperiodic(domain, run);

@@ -253,16 +253,17 @@ std::vector<SizeSample> samples_of_features(const SurfaceMesh& surface, const Ch
   return feature_samples(surface, curves, choice.feature_elements, choice.floor, choice.base);
 }
 
-/// Where the body is thin and round: sizes that keep a needle's volume, and both sides of a tube apart. Coarser
-/// automatic sizes do not follow automatic_factor beyond kCoarsestThin there.
+/// Where the body is thin and round: sizes that keep a needle's volume, and both sides of a tube apart. Not where there
+/// is a least size for details, as images have, whose volumes are kept by moves of vertices. Coarser automatic sizes do
+/// not follow automatic_factor beyond kCoarsestThin there.
 SizeAtPlace sizes_of_thin(const KnownSurface& known, const SizeOptions& options, double least, Bends& bends,
                           WantedSizes& wanted, const Stage& stage) {
-  if (!options.size && !wanted.automatic) return {};
+  if ((!options.size && !wanted.automatic) || least > 0) return {};
   const double beyond = wanted.automatic ? std::max(1.0, options.automatic_factor / kCoarsestThin) : 1;
   std::vector<double> face = wanted.face;
   for (double& h : face) h *= beyond;
   const double largest = *std::ranges::max_element(wanted.face);
-  const double floor = std::max({options.min_size.value_or(0), least, kRoundFloor * largest});
+  const double floor = std::max(options.min_size.value_or(0), kRoundFloor * largest);
   const auto enter = [&](const char* name, SizeAtPlace sizes, const char* what, const char* why) {
     if (sizes && beyond > 1) sizes.at = [at = sizes.at, beyond](const PlaceOnSurface& p) { return at(p) / beyond; };
     wanted.sources.add(name, sizes);

@@ -76,7 +76,7 @@ class Disc {
         weight += of_.twice_area[f];
       }
       if (length(normal) < kFacing * weight) return before;
-      const double height = height_of(p + middle / weight, normal / length(normal));
+      const double height = height_of(p + middle / weight, normal / length(normal), r);
       if (height > apart) return before + (r - before) * (apart - height_before) / (height - height_before);
       if (r >= most) return most;
       before = r;
@@ -132,11 +132,13 @@ class Disc {
     }
   }
 
-  /// How far the corners of the faces spread along the normal.
-  double height_of(Vec3 origin, Vec3 normal) const {
+  /// How far the faces spread along the normal: their corners, those of large faces only as far as the disc reaches.
+  double height_of(Vec3 origin, Vec3 normal, double radius) const {
     double low = 0, high = 0;
     for (const Vec3& p : points_) {
-      const double height = dot(p - origin, normal);
+      const double away = distance(p, middle_);
+      const Vec3 within = away > radius ? middle_ + (p - middle_) * (radius / away) : p;
+      const double height = dot(within - origin, normal);
       low = std::min(low, height);
       high = std::max(high, height);
     }

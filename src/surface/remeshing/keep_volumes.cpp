@@ -4,6 +4,7 @@
 #include "base/core/groups.h"
 #include "base/mesh/complex.h"
 #include "surface/edits/crossings.h"
+#include "surface/remeshing/fit_chords.h"
 #include "surface/remeshing/surface_check.h"
 
 #include <algorithm>
@@ -15,7 +16,8 @@ namespace octafront {
 
 namespace {
 
-constexpr double kMostMove = 0.2;  // of the shortest edge: triangles keep their shape
+constexpr double kMostMove = 0.2;    // of the shortest edge: triangles keep their shape
+constexpr double kMostToFit = 0.75;  // of that way: the rest is for volumes
 constexpr int kVolumeSteps = 6;
 /// Volumes this near to what is wanted need no further step: a hundredth of what a note is written for.
 constexpr double kVolumeReached = 1e-4;
@@ -91,7 +93,15 @@ class Keeper {
     keep_flat_parts();
   }
 
-  std::uint64_t run(const TooFar& too_far, const RunContext& context) {
+  std::uint64_t run(const TooFar& too_far, const KnownSurface* input, const RunContext& context) {
+    if (input != nullptr) {
+      const std::vector<Vec3> to_fit = moves_to_fit(surface_, moves_, *input);
+      for (std::size_t v = 0; v < to_fit.size(); ++v) {
+        const double l = length(to_fit[v]), most = kMostToFit * reach_[v];
+        surface_.points[v] = before_[v] + (l <= most ? to_fit[v] : to_fit[v] * (most / l));
+      }
+      go_back(too_far, context);
+    }
     for (int step = 0; step < kVolumeSteps; ++step) {
       context.check();
       const std::vector<double> missing = missing_volumes();
@@ -197,8 +207,9 @@ class Keeper {
 }  // namespace
 
 std::uint64_t keep_volumes(SurfaceMesh& surface, const Features& features, std::span<const double> wanted,
-                           const TooFar& too_far, std::span<const VertexIndex> fixed, const RunContext& context) {
-  return Keeper(surface, features, wanted, fixed).run(too_far, context);
+                           const TooFar& too_far, std::span<const VertexIndex> fixed, const KnownSurface* input,
+                           const RunContext& context) {
+  return Keeper(surface, features, wanted, fixed).run(too_far, input, context);
 }
 
 namespace surface {
@@ -214,10 +225,11 @@ std::vector<VertexIndex> vertices_in_crossings(const SurfaceMesh& surface) {
 }
 
 std::uint64_t keep_volumes_clean(SurfaceMesh& surface, const Features& features, std::span<const double> wanted,
-                                 std::span<const VertexIndex> fixed, const RunContext& context) {
+                                 std::span<const VertexIndex> fixed, const KnownSurface* input,
+                                 const RunContext& context) {
   const std::vector<Vec3> before = surface.points;
   const TooFar crossing = [&] { return vertices_in_crossings(surface); };
-  const std::uint64_t moved = keep_volumes(surface, features, wanted, crossing, fixed, context);
+  const std::uint64_t moved = keep_volumes(surface, features, wanted, crossing, fixed, input, context);
   if (moved == 0 || surface.sides.empty() || !first_complex_defect_but_crossings(surface, context)) return moved;
   surface.points = before;
   return 0;

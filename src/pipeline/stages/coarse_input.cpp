@@ -1,0 +1,69 @@
+#include "pipeline/stages/coarse_input.h"
+
+#include "base/core/elementary.h"
+#include "base/mesh/complex.h"
+#include "pipeline/stages/methods.h"
+#include "soup/coarse/decimate.h"
+
+#include <algorithm>
+#include <cmath>
+
+namespace octafront {
+
+namespace {
+
+/// Edges may get this part of the least size that is asked for (.5 leaves twice the triangles and gives the same
+/// meshes); they are not worth the work where that is less than this number of voxels.
+constexpr double kEdge = 0.75, kLeastEdge = 1.5;
+/// The part of the bound on the deviation that is spent on it, at most this part of a voxel: at .25 a tenth fewer
+/// triangles are left, and lines lie so far off that corners get poor elements.
+constexpr double kPartOfDeviation = 0.25, kMostDeviation = 0.1;
+
+bool measures_surface(const SizeOptions& sizes) {
+  return sizes.curvature || sizes.gap || sizes.through || sizes.feature_elements || sizes.facets || sizes.field ||
+         sizes.mesh || sizes.callback || !sizes.point_sizes.empty();
+}
+
+/// That of the elements asked for, if all had one; or the given one.
+double size_of_all(const SizeOptions& sizes, const SurfaceMesh& surface) {
+  constexpr double kRegularTet = 0.11785113;  // its volume over the cube of its edge
+  if (sizes.size) return *sizes.size;
+  if (!sizes.elements) return 0;
+  double volume = 0;
+  for (const double v : volumes_of_regions(surface)) volume += v;
+  return elementary::cbrt(volume / kRegularTet / static_cast<double>(*sizes.elements));
+}
+
+double least_size(const SizeOptions& sizes, const SurfaceMesh& surface) {
+  double least = size_of_all(sizes, surface);
+  for (const NamedSize& s : sizes.named) least = std::min(least, s.size);
+  for (const NearSize& s : sizes.near) least = std::min(least, s.size);
+  for (const SizeRegion& s : sizes.regions) least = std::min(least, s.size);
+  return least;
+}
+
+}  // namespace
+
+std::optional<Domain> coarse_domain(const Domain& domain, Run& run) {
+  const Options& options = run.options;
+  const bool must_stay = keeps_surface(options) || !traits_of(options.method).has_front || !options.periodic.empty() ||
+                         !domain.bound.empty() || options.surface.normal_deviation;
+  if (domain.voxel_spacing == 0 || must_stay || measures_surface(options.size)) return {};
+  const double edge = kEdge * least_size(options.size, domain.surface);
+  if (edge < kLeastEdge * domain.voxel_spacing) return {};
+  const double most = kMostDeviation * domain.voxel_spacing;
+  const double deviation = std::min(most, kPartOfDeviation * options.surface.max_deviation.value_or(HUGE_VAL));
+  return run.stage("coarsen", [&](const Stage& stage) {
+    Domain coarse = domain;
+    coarse.surface = decimated(
+        domain.surface, {.edge = edge, .deviation = deviation, .sharp_angle = options.surface.angle_of_features()},
+        stage.context());
+    const bool was_clean = domain.found_clean != 0 && domain.found_clean == fingerprint(domain.surface);
+    coarse.found_clean = was_clean ? fingerprint(coarse.surface) : 0;
+    stage.count("triangles of the image", static_cast<double>(domain.surface.triangles.size()));
+    stage.count("triangles", static_cast<double>(coarse.surface.triangles.size()));
+    return coarse;
+  });
+}
+
+}  // namespace octafront
