@@ -4,8 +4,9 @@
 #include "images/nets/fans.h"
 
 #include <algorithm>
+#include <bit>
 #include <cmath>
-#include <limits>
+#include <unordered_map>
 
 namespace octafront::nets {
 
@@ -50,25 +51,50 @@ bool is_layer(const Lattice& lattice, Corner voxel, int axis) {
   return lattice.label(before) != label && lattice.label(behind) != label;
 }
 
-}  // namespace
+/// A wall between voxels, and the signed ways to the middles of those below and above.
+struct Wall {
+  double to_below, to_above;
+  double half_over_below, half_over_above;  ///< a half over each way
+};
 
-VertexCells::VertexCells(const Lattice& lattice, const Net& net)
-    : farthest_(HUGE_VAL), net_(net), share_(net.corner.size()) {
-  for (int a = 0; a < 3; ++a)
-    for (std::int32_t i = 0; i <= lattice.size(a); ++i) {
-      const double at = lattice.wall(a, i), below = lattice.middle(a, i - 1) - at, above = lattice.middle(a, i) - at;
-      walls_[a].push_back({at, below, above, 0.5 / below, 0.5 / above});
-    }
-  // Flat on the image's box.
-  for (int a = 0; a < 3; ++a)
-    for (std::int32_t i = 0; i <= lattice.size(a); ++i)
-      if (Corner c{}; c[a] = i, lattice.on_box(c, a)) walls_[a][i].to_below = walls_[a][i].to_above = 0;
-  parallel_for(net.corner.size(), [&](std::size_t v) { keep_layers_apart(lattice, static_cast<VertexIndex>(v)); });
+std::vector<Wall> walls_of(const Lattice& lattice, int axis) {
+  std::vector<Wall> walls;
+  for (std::int32_t i = 0; i <= lattice.size(axis); ++i) {
+    const double at = lattice.wall(axis, i);
+    const double below = lattice.middle(axis, i - 1) - at, above = lattice.middle(axis, i) - at;
+    walls.push_back({below, above, 0.5 / below, 0.5 / above});
+    Corner c{};
+    c[axis] = i;
+    if (lattice.on_box(c, axis)) walls[i].to_below = walls[i].to_above = 0;
+  }
+  return walls;
 }
 
-VertexCells::VertexCells(const Lattice& lattice, const Net& net, std::span<const std::uint64_t> voxels)
-    : VertexCells(lattice, net) {
-  farthest_ = kFarthest;
+struct HashOfRoom {
+  std::size_t operator()(const VertexCells::Room& room) const {
+    std::uint64_t hash = 0;
+    for (const Vec3& p : {room.lo, room.hi, room.half_over_below, room.half_over_above})
+      for (int a = 0; a < 3; ++a)
+        hash = (hash ^ std::bit_cast<std::uint64_t>(p[a])) * 0x9e3779b97f4a7c15u, hash ^= hash >> 29;
+    return hash;
+  }
+};
+
+/// Part of the way to the middles on one side of a corner that keeps layers apart.
+float share_between_layers(const Lattice& lattice, const Corner& c, int axis, int side, bool joins_three) {
+  for (int o = 0; o < 4; ++o) {
+    Corner voxel;
+    voxel[axis] = c[axis] - 1 + side;
+    voxel[(axis + 1) % 3] = c[(axis + 1) % 3] - (o & 1);
+    voxel[(axis + 2) % 3] = c[(axis + 2) % 3] - (o >> 1);
+    if (is_layer(lattice, voxel, axis)) return joins_three ? kRoomAtLines : kRoomInLayers;
+  }
+  return kMostRoom;
+}
+
+/// Less room at labels of few voxels.
+template <class Shares>
+void narrow_at_small(const Net& net, std::span<const std::uint64_t> voxels, Shares& shares) {
   std::vector<float> of_label(voxels.size());
   std::transform(voxels.begin(), voxels.end(), of_label.begin(), room_of);
   if (std::find_if(of_label.begin(), of_label.end(), [](float s) { return s < kMostRoom; }) == of_label.end()) return;
@@ -76,43 +102,71 @@ VertexCells::VertexCells(const Lattice& lattice, const Net& net, std::span<const
     for (const Label label : {q.lower, q.upper})
       if (label != LabelImage::kNoRegion && of_label[label] < kMostRoom)
         for (const VertexIndex v : q.v)
-          for (auto& sides : share_[v])
+          for (auto& sides : shares[v])
             for (float& share : sides) share = std::min(share, of_label[label]);
 }
 
-void VertexCells::keep_layers_apart(const Lattice& lattice, VertexIndex v) {
-  const Corner& c = net_.corner[v];
-  const bool joins_three = label_count(octants_at(lattice, c)) > 2;
-  for (int axis = 0; axis < 3; ++axis)
-    for (int side = 0; side < 2; ++side) {
-      float& share = share_[v][axis][side];
-      share = kMostRoom;
-      for (int o = 0; o < 4; ++o) {
-        Corner voxel;
-        voxel[axis] = c[axis] - 1 + side;
-        voxel[(axis + 1) % 3] = c[(axis + 1) % 3] - (o & 1);
-        voxel[(axis + 2) % 3] = c[(axis + 2) % 3] - (o >> 1);
-        if (is_layer(lattice, voxel, axis)) share = joins_three ? kRoomAtLines : kRoomInLayers;
-      }
+}  // namespace
+
+VertexCells::VertexCells(const Lattice& lattice, const Net& net) : farthest_(HUGE_VAL), net_(net) {
+  number_rooms(lattice, shares_between_layers(lattice, net));
+}
+
+VertexCells::VertexCells(const Lattice& lattice, const Net& net, std::span<const std::uint64_t> voxels)
+    : farthest_(kFarthest), net_(net) {
+  Shares shares = shares_between_layers(lattice, net);
+  narrow_at_small(net, voxels, shares);
+  number_rooms(lattice, shares);
+}
+
+VertexCells::Shares VertexCells::shares_between_layers(const Lattice& lattice, const Net& net) {
+  Shares shares(net.corner.size());
+  parallel_for(shares.size(), [&](std::size_t v) {
+    const Corner& c = net.corner[v];
+    const bool joins_three = label_count(octants_at(lattice, c)) > 2;
+    for (int axis = 0; axis < 3; ++axis)
+      for (int side = 0; side < 2; ++side)
+        shares[v][axis][side] = share_between_layers(lattice, c, axis, side, joins_three);
+  });
+  return shares;
+}
+
+void VertexCells::number_rooms(const Lattice& lattice, const Shares& shares) {
+  std::array<std::vector<Wall>, 3> walls;
+  for (int a = 0; a < 3; ++a) {
+    walls[a] = walls_of(lattice, a);
+    for (std::int32_t i = 0; i <= lattice.size(a); ++i) wall_[a].push_back(lattice.wall(a, i));
+  }
+  std::unordered_map<Room, std::uint32_t, HashOfRoom> numbers;
+  room_of_.resize(shares.size());
+  for (std::size_t v = 0; v < shares.size(); ++v) {
+    Room room;
+    for (int a = 0; a < 3; ++a) {
+      const Wall& wall = walls[a][static_cast<std::size_t>(net_.corner[v][a])];
+      const auto [below, above] = shares[v][a];
+      room.lo[a] = below * wall.to_below;
+      room.hi[a] = above * wall.to_above;
+      room.half_over_below[a] = wall.half_over_below;
+      room.half_over_above[a] = wall.half_over_above;
     }
+    const auto [at, is_new] = numbers.try_emplace(room, static_cast<std::uint32_t>(rooms_.size()));
+    if (is_new) rooms_.push_back(room);
+    room_of_[v] = at->second;
+  }
 }
 
 Vec3 VertexCells::clamped(VertexIndex v, Vec3 p) const {
-  const Corner& c = net_.corner[v];
-  Vec3 corner;
+  const Vec3 from = corner(v);
+  const Room& room = rooms_[room_of_[v]];
+  // No branches: which side a vertex moves to nobody can foresee.
+  const Vec3 move = min(max(p - from, room.lo), room.hi);
   double squared_way = 0;  // in voxels
   for (int a = 0; a < 3; ++a) {
-    const Wall& wall = walls_[a][static_cast<std::size_t>(c[a])];
-    const auto [below, above] = share_[v][a];
-    // No branches: which side a vertex moves to nobody can foresee.
-    const double move = std::min(std::max(p[a] - wall.at, below * wall.to_below), above * wall.to_above);
-    const double way = std::max(move * wall.half_over_below, move * wall.half_over_above);
+    const double way = std::max(move[a] * room.half_over_below[a], move[a] * room.half_over_above[a]);
     squared_way += way * way;
-    corner[a] = wall.at;
-    p[a] = move;
   }
-  if (squared_way <= farthest_ * farthest_) return corner + p;
-  return corner + p * (farthest_ / std::sqrt(squared_way));
+  if (squared_way <= farthest_ * farthest_) return from + move;
+  return from + move * (farthest_ / std::sqrt(squared_way));
 }
 
 }  // namespace octafront::nets

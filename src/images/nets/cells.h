@@ -22,19 +22,32 @@ class VertexCells {
 
   Vec3 clamped(VertexIndex v, Vec3 p) const;
 
- private:
-  /// A wall between voxels, and the signed ways to the middles of those below and above.
-  struct Wall {
-    double at, to_below, to_above;
-    double half_over_below, half_over_above;  ///< a half over each way
+  /// Ways from a corner. Many vertices have the same room: there are few of them.
+  struct Room {
+    Vec3 lo, hi;
+    Vec3 half_over_below, half_over_above;  ///< a half over the signed ways to the middles of the voxels
+    friend bool operator==(const Room&, const Room&) = default;
   };
-  void keep_layers_apart(const Lattice& lattice, VertexIndex v);
+  const std::vector<Room>& rooms() const { return rooms_; }
+  std::uint32_t room_number(VertexIndex v) const { return room_of_[v]; }
+  Vec3 corner(VertexIndex v) const {
+    const Corner& c = net_.corner[v];
+    return {wall_[0][c[0]], wall_[1][c[1]], wall_[2][c[2]]};
+  }
+  /// From the corner, in voxels.
+  double farthest() const { return farthest_; }
 
-  double farthest_;  ///< from the corner, in voxels
-  const Net& net_;
-  std::array<std::vector<Wall>, 3> walls_;  ///< per axis
+ private:
   /// Per vertex, axis and side, lower ones first: part of the way to the middles of the voxels there.
-  std::vector<std::array<std::array<float, 2>, 3>> share_;
+  using Shares = std::vector<std::array<std::array<float, 2>, 3>>;
+  static Shares shares_between_layers(const Lattice& lattice, const Net& net);
+  void number_rooms(const Lattice& lattice, const Shares& shares);
+
+  double farthest_;
+  const Net& net_;
+  std::array<std::vector<double>, 3> wall_;  ///< per axis
+  std::vector<Room> rooms_;
+  std::vector<std::uint32_t> room_of_;  ///< per vertex
 };
 
 }  // namespace octafront::nets

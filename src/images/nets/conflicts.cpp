@@ -121,9 +121,13 @@ struct ConflictSearch::Part {
   std::function<bool(VertexIndex)> is_whole_at;
 };
 
-ConflictSearch::ConflictSearch(const Net& net, std::span<const Vec3> world, bool is_mirrored,
-                               std::span<const std::uint8_t> may_yield)
-    : net_(net), world_(world), is_mirrored_(is_mirrored), may_yield_(may_yield) {}
+ConflictSearch::ConflictSearch(const Net& net, const Lattice& lattice, std::span<const Vec3> x,
+                               std::span<const Vec3> world, std::span<const std::uint8_t> may_yield)
+    : net_(net),
+      shelters_(net, lattice, x),
+      world_(world),
+      is_mirrored_(lattice.is_mirrored()),
+      may_yield_(may_yield) {}
 
 void ConflictSearch::add_sharp(std::uint32_t quad, Conflicts& found) const {
   const auto& v = net_.quads[quad].v;
@@ -136,10 +140,23 @@ void ConflictSearch::search(const Part& part, Conflicts& found, const RunContext
   find_folds(part, found);
 }
 
+/// Those without shelter, and what has a corner in common with these: quads of other corners lie in other cells. Where
+/// several vertices share a corner none of their quads has shelter.
+std::vector<std::uint32_t> ConflictSearch::quads_that_may_cross(const Part& part) const {
+  std::vector<std::uint8_t> is_near(net_.corner.size(), 0);
+  for (const std::uint32_t q : part.quads)
+    if (!shelters_.holds(q))
+      for (const VertexIndex v : net_.quads[q].v) is_near[v] = 1;
+  std::vector<std::uint32_t> quads;
+  for (const std::uint32_t q : part.quads)
+    if (std::ranges::any_of(net_.quads[q].v, [&](VertexIndex v) { return is_near[v] != 0; })) quads.push_back(q);
+  return quads;
+}
+
 void ConflictSearch::find_crossings(const Part& part, Conflicts& found, const RunContext& context) const {
   std::vector<Triangle> triangles;
   std::vector<std::uint32_t> quad_of;
-  for (const std::uint32_t q : part.quads)
+  for (const std::uint32_t q : quads_that_may_cross(part))
     for (const Triangle& t : triangles_of(net_.quads[q])) {
       if (collinear(world_[t[0]], world_[t[1]], world_[t[2]])) {
         found.invalid.push_back(q);

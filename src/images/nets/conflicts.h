@@ -3,6 +3,7 @@
 #include <octafront/run_context.h>
 
 #include "images/nets/net.h"
+#include "images/nets/shelters.h"
 
 #include <cstdint>
 #include <span>
@@ -25,9 +26,9 @@ struct Conflicts {
 /// memory stays small.
 class ConflictSearch {
  public:
-  /// `world`: the vertices, which may be a mirror image. `may_yield`: per vertex, whether the vertex may be asked to go
-  /// back where the net is sharp.
-  ConflictSearch(const Net& net, std::span<const Vec3> world, bool is_mirrored,
+  /// `x`, `world`: the vertices in straight space and in the world. `may_yield`: per vertex, whether the vertex may be
+  /// asked to go back where the net is sharp.
+  ConflictSearch(const Net& net, const Lattice& lattice, std::span<const Vec3> x, std::span<const Vec3> world,
                  std::span<const std::uint8_t> may_yield);
 
   Conflicts all(const RunContext& context) const;
@@ -38,6 +39,7 @@ class ConflictSearch {
   struct Part;
   struct CurveEnd;
   void search(const Part& part, Conflicts& found, const RunContext& context) const;
+  std::vector<std::uint32_t> quads_that_may_cross(const Part& part) const;
   void find_crossings(const Part& part, Conflicts& found, const RunContext& context) const;
   void find_around_edges(const Part& part, Conflicts& found) const;
   void find_sharp_corners(std::vector<CurveEnd> ends, Conflicts& found) const;
@@ -45,6 +47,7 @@ class ConflictSearch {
   void add_sharp(std::uint32_t quad, Conflicts& found) const;
 
   const Net& net_;
+  Shelters shelters_;
   std::span<const Vec3> world_;
   bool is_mirrored_;
   std::span<const std::uint8_t> may_yield_;

@@ -48,7 +48,7 @@ class Settling {
   }
 
  private:
-  ConflictSearch search() const { return {net_, resolved_.world, lattice_.is_mirrored(), may_yield_}; }
+  ConflictSearch search() const { return {net_, lattice_, x_, resolved_.world, may_yield_}; }
 
   std::vector<VertexIndex> vertices_of(const std::vector<std::uint32_t>& quads) const {
     std::vector<VertexIndex> vertices;

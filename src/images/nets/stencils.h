@@ -18,16 +18,12 @@ class Stencils {
   Vec3 difference(std::span<const Vec3> x, VertexIndex v) const {
     Vec3 sum;
     for (const VertexIndex to : own_[v]) sum += x[to];
-    return sum * weight(v) - x[v];
+    return sum * kWeights[own_[v].size()] - x[v];
   }
-  /// One over the size of the stencil.
-  double weight(VertexIndex v) const { return kWeights[own_[v].size()]; }
-  /// What the differences make of a vertex: the transposed of the above. `weighted`: the differences times weights.
-  Vec3 transposed(std::span<const Vec3> weighted, VertexIndex v) const {
-    Vec3 sum;
-    for (const VertexIndex of : users_[v]) sum += weighted[of];
-    return sum - weighted[v] * static_cast<double>(own_[v].size());
-  }
+  /// The stencil of a vertex.
+  std::span<const VertexIndex> of(VertexIndex v) const { return own_[v]; }
+  /// Those in whose stencils it is: in the order of its stencil if they are the same.
+  std::span<const VertexIndex> users(VertexIndex v) const { return users_[v]; }
 
  private:
   /// By the size of a stencil: two for each of twelve quads at most.
