@@ -26,6 +26,7 @@
 #   bench/run.sh images      volumes of labels, each label judged; --peers: beside CGAL -> docs/measured/images-status.md
 #   bench/run.sh images_needed   label images at sizes coarser than voxels: elements made and needed, Dice; --beside PROGRAM: another
 #                            build of octafront    -> docs/measured/images-needed.md
+#   bench/run.sh four_shells  four concentric spheres as a head, of voxels and of surfaces, solved: potentials beside the series -> docs/measured/four-shells.md
 #   bench/run.sh thin        plates, discs, tubes, shells 1:10 to 1:1e6, beside Gmsh and TetGen -> docs/measured/thin-bodies.md
 #   bench/run.sh budget      automatic sizes: budget said, elements made, time, what was given up -> docs/measured/budget-status.md
 #   bench/run.sh cad         CAD files at parts of their diagonal: volumes, areas, names, nodes on the geometry, time; --peers: beside Gmsh
@@ -45,7 +46,7 @@ cd "$(dirname "$0")/.."
 source scripts/lib/apt.sh
 
 case ${1:-} in
-  status | derived | pipeline | surface | elements | gradation | volume | graded | peers | experiments | complexes | improve | adapt | adapt_loops | formats | parts | second_order | dry_run | repair | known_answers | damage | images | images_needed | thin | budget | cad | layers | layers_shapes | layers_flows | layers_peers | layers_solved | inside | periodic | ranks | threads | answers) ;;
+  status | derived | pipeline | surface | elements | gradation | volume | graded | peers | experiments | complexes | improve | adapt | adapt_loops | formats | parts | second_order | dry_run | repair | known_answers | damage | images | images_needed | four_shells | thin | budget | cad | layers | layers_shapes | layers_flows | layers_peers | layers_solved | inside | periodic | ranks | threads | answers) ;;
   *) sed -n '2,/^set/s/^# \{0,1\}//p' "$0"; exit 2 ;;
 esac
 need_packages "${build_packages[@]}" python3
@@ -70,8 +71,9 @@ need_packages "${build_packages[@]}" python3
 [ "$1" != layers_peers ] || need_packages python3-gmsh
 [ "$1" != images ] || need_packages libcgal-dev libgmp-dev libmpfr-dev libboost-dev
 [ "$1" != images_needed ] || need_packages python3-numpy python3-nibabel
+[ "$1" != four_shells ] || need_packages python3-numpy python3-scipy python3-nibabel python3-meshio
 [[ $1 != images* ]] || [ -d volumes ] || bench/models/get-volumes.sh
-[ "$1" = formats ] || [ "$1" = ranks ] || [ "$1" = adapt ] || [ "$1" = complexes ] || [[ $1 = images* ]] || [ "$1" = thin ] || [ "$1" = cad ] || [ "$1" = answers ] || [ -d models/clean ] || bench/models/get-models.sh --ct
+[ "$1" = formats ] || [ "$1" = ranks ] || [ "$1" = adapt ] || [ "$1" = complexes ] || [ "$1" = four_shells ] || [[ $1 = images* ]] || [ "$1" = thin ] || [ "$1" = cad ] || [ "$1" = answers ] || [ -d models/clean ] || bench/models/get-models.sh --ct
 tests=OFF
 [ "$1" != complexes ] && [ "$1" != known_answers ] || tests=ON  # what makes complexes is theirs, and a judge
 mpi=()
@@ -97,5 +99,5 @@ cmake --build --preset release --target octafront_cli octafront_evaluate octafro
 [[ $1 != layers_* ]] || [ -d models/flows ] || bench/models/get-flows.sh build/release/cli/octafront
 python=python3
 [ "$1" != repair ] && [ "$1" != known_answers ] && [ "$1" != damage ] && [ "$1" != images_needed ] || python=/usr/bin/python3  # Debian's, with its NumPy
-[[ $1 != layers_* ]] && [ "$1" != inside ] && [ "$1" != periodic ] && [ "$1" != answers ] || python=/usr/bin/python3
+[[ $1 != layers_* ]] && [ "$1" != inside ] && [ "$1" != periodic ] && [ "$1" != answers ] && [ "$1" != four_shells ] || python=/usr/bin/python3
 exec "$python" -m "bench.run.$1" build/release "${@:2}"

@@ -86,6 +86,32 @@ def sphere(n=16, radius=1.0):
     return Solid(radius * p / np.linalg.norm(p, axis=1)[:, None], box.triangles)
 
 
+def icosphere(levels):
+    """Radius 1: the triangles of an icosahedron in four, so many times."""
+    t = (1 + 5**0.5) / 2
+    points = [(-1, t, 0), (1, t, 0), (-1, -t, 0), (1, -t, 0), (0, -1, t), (0, 1, t), (0, -1, -t), (0, 1, -t), (t, 0, -1), (t, 0, 1),
+              (-t, 0, -1), (-t, 0, 1)]
+    points = [np.array(p) / np.linalg.norm(p) for p in points]
+    faces = [(0, 11, 5), (0, 5, 1), (0, 1, 7), (0, 7, 10), (0, 10, 11), (1, 5, 9), (5, 11, 4), (11, 10, 2), (10, 7, 6), (7, 1, 8),
+             (3, 9, 4), (3, 4, 2), (3, 2, 6), (3, 6, 8), (3, 8, 9), (4, 9, 5), (2, 4, 11), (6, 2, 10), (8, 6, 7), (9, 8, 1)]
+    for _ in range(levels):
+        middles, finer = {}, []
+
+        def middle(a, b):
+            key = (min(a, b), max(a, b))
+            if key not in middles:
+                p = points[a] + points[b]
+                points.append(p / np.linalg.norm(p))
+                middles[key] = len(points) - 1
+            return middles[key]
+
+        for a, b, c in faces:
+            x, y, z = middle(a, b), middle(b, c), middle(c, a)
+            finer += [(a, x, z), (x, b, y), (z, y, c), (x, y, z)]
+        faces = finer
+    return np.array(points), faces
+
+
 def torus(n=48, m=24, thickness=0.35):
     def at(u, v):
         u, v = 2 * math.pi * (u % 1), 2 * math.pi * (v % 1)

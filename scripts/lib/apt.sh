@@ -35,7 +35,7 @@ mpi_packages=(libopenmpi-dev openmpi-bin)
 # And what Python programs speak with: of --all.
 mpi_test_packages=(python3-mpi4py)
 # What judges our files (tests/formats) and packages (tests/install) and solves with them (tests/solved): those of --all.
-format_packages=(gmsh python3-gmsh calculix-ccx python3-meshio python3-netcdf4 python3-vtk9 python3-h5py python3-med netcdf-bin cgns-convert openfoam openmpi-bin tetgen lintian)
+format_packages=(gmsh python3-gmsh calculix-ccx python3-meshio python3-scipy python3-netcdf4 python3-vtk9 python3-h5py python3-med netcdf-bin cgns-convert openfoam openmpi-bin tetgen lintian)
 # Pages of docstrings, and what checks types: those of --all.
 doc_packages=(doxygen python3-sphinx mypy)
 # What opens the report page (tests/report/page): also of --all.
