@@ -49,7 +49,7 @@ struct ImageIntake {
   /// surfaces alone make so many elements: then no other triangles follow them.
   double most_elements = HUGE_VAL;
   /// Small contacts of labels are cleared (CleanOptions::contacts): those below an area, or "keep". Empty: below the
-  /// square of `size`, if that is given.
+  /// square of `size`, if that is given and the image is not repeated.
   std::string contacts = {};
   std::optional<double> size = {};  ///< the edge length that elements will have, in the unit of the file, > 0
 };

@@ -125,8 +125,10 @@ std::optional<Image> with_whole_labels(const Image& image) {
   return made;
 }
 
-double area_of_contacts(const Image& image, const ImageRegions& regions, const ImageIntake& asked) {
-  if (asked.contacts == "keep") return 0;
+/// `repeats`: what is changed at one face of a cell would have to change at the opposite one.
+double area_of_contacts(const Image& image, const ImageRegions& regions, const ImageIntake& asked, bool repeats) {
+  if (asked.contacts == "keep" || (repeats && asked.contacts.empty())) return 0;
+  if (repeats) throw OptionError("`contacts` are not cleared in an image that is repeated: give keep, or leave it out");
   if (!asked.contacts.empty()) {
     double area = -1;
     const char* const end = asked.contacts.data() + asked.contacts.size();
@@ -181,14 +183,14 @@ void take_image(Domain& domain, const IntakeOptions& options, const Image& image
   const Image& given = whole ? *whole : image;
   const std::optional<Image> part = taken(domain, options, given, regions, context);
   const Image& used = part ? *part : given;
-  if (regions.clean.contacts == 0) regions.clean.contacts = area_of_contacts(used, regions, options.image);
+  const std::array<bool, 3> repeated = axes_named("repeat", options.repeat.value_or(""));
+  const bool repeats = std::ranges::any_of(repeated, [](bool along) { return along; });
+  if (regions.clean.contacts == 0) regions.clean.contacts = area_of_contacts(used, regions, options.image, repeats);
   domain.format = image.format;
   domain.frame = image.frame;
   domain.voxel_spacing = smallest_spacing(used.grid);
   domain.voxels = used.grid.size;
   try {
-    const std::array<bool, 3> repeated = axes_named("repeat", options.repeat.value_or(""));
-    const bool repeats = std::ranges::any_of(repeated, [](bool along) { return along; });
     take_complex(domain, options,
                  repeats ? complex_of_periodic_image(used, regions, repeated, context)
                          : complex_of_image(used, regions, context));

@@ -14,6 +14,7 @@
 #include "pipeline/stages/kept_volumes.h"
 #include "pipeline/stages/measure.h"
 #include "pipeline/stages/methods.h"
+#include "pipeline/stages/periodic.h"
 #include "pipeline/stages/requirements.h"
 #include "pipeline/stages/true_shape.h"
 #include "pipeline/stages/volume_tolerance.h"
@@ -23,6 +24,8 @@
 #include <string>
 #include <utility>
 #include <vector>
+
+#include <fmt/format.h>
 
 namespace octafront {
 
@@ -90,9 +93,30 @@ Domain with_sheets(const Domain& domain, const Fins& fins, const RunContext& con
   return with;
 }
 
+/// Opposite faces of an image become the same sooner where they stay nearer to its voxels: tried again, so often, with
+/// half the bound on the deviation that suits the size.
+constexpr int kNearerCells = 3;
+
+Result generate_nearer(const Domain& domain, Options asked, const RunContext& context, Fins* fins) {
+  const bool may_be_nearer = domain.voxel_spacing > 0 && asked.size.size && !asked.surface.max_deviation;
+  std::string note;
+  for (int tries = may_be_nearer ? kNearerCells : 0;; --tries) {
+    try {
+      Result made = generate_once(domain, asked, context, fins);
+      if (!note.empty()) made.report.stages.back().notes.push_back(std::move(note));
+      return made;
+    } catch (const FacesDiffer&) {
+      const std::optional<double> strayed = suited(domain, asked).surface.max_deviation;
+      if (tries == 0 || !strayed) throw;
+      asked.surface.max_deviation = 0.5 * *strayed;
+      note = fmt::format("opposite faces became the same within {:.3g} of the voxels: `max_deviation`", 0.5 * *strayed);
+    }
+  }
+}
+
 /// generate() of a domain without lines and points, or with fins for them.
 Result generate_in(const Domain& domain, const Options& asked, const RunContext& context, Fins* fins) {
-  const auto make = [&](const Domain& of) { return generate_once(of, asked, context, fins); };
+  const auto make = [&](const Domain& of) { return generate_nearer(of, asked, context, fins); };
   const std::optional<double>& percent = asked.surface.volume_tolerance;
   return percent ? with_volumes_within(*percent, domain, make) : make(domain);
 }

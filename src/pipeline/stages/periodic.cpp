@@ -135,8 +135,8 @@ class LinkFinder {
   }
 
   [[noreturn]] void refuse(VertexIndex v, int k) const {
-    throw MeshingError(fmt::format("opposite faces along {} did not become the same around {}: a smaller size may help",
-                                   cell_.name_of_period(k), at_point(mesh_.points[v])));
+    throw FacesDiffer(fmt::format("opposite faces along {} did not become the same around {}: a smaller size may help",
+                                  cell_.name_of_period(k), at_point(mesh_.points[v])));
   }
 
   const TetMesh& mesh_;

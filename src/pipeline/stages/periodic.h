@@ -3,6 +3,7 @@
 // Periodic cells in the pipeline: the input's opposite faces made the same, what stays where it is, nodes paired.
 
 #include <octafront/domain.h>
+#include <octafront/error.h>
 
 #include "base/mesh/periodic_cell.h"
 #include "pipeline/stages/run.h"
@@ -11,6 +12,12 @@
 #include <vector>
 
 namespace octafront {
+
+/// Opposite faces of a cell did not become the same.
+class FacesDiffer : public MeshingError {
+ public:
+  using MeshingError::MeshingError;
+};
 
 struct Prepared;
 struct TetMesh;

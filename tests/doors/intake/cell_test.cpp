@@ -191,10 +191,12 @@ TEST(Cell, VoxelsByChanceTouchThemselvesAndLeaveHoles) {
     IntakeOptions intake;
     intake.repeat = axes;
     intake.image.regions.kind = ImageRegions::Kind::kLabels;
-    const Domain domain = open_domain(image, intake);
-    const Result r = generate(domain, with_periods(1.5, axes));
-    EXPECT_EQ(first_defect(r.mesh), std::nullopt);
-    expect_all_paired(r.mesh);
+    for (const double size : {1.5, 2.5}) {
+      const Domain domain = open_domain(image, intake_for(with_periods(size, axes), intake));
+      const Result r = generate(domain, with_periods(size, axes));
+      EXPECT_EQ(first_defect(r.mesh), std::nullopt);
+      expect_all_paired(r.mesh);
+    }
   }
 }
 

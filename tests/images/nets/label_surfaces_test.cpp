@@ -253,7 +253,7 @@ TEST(ImageOptions, CoarseElementsStayAsNearAsAsked) {
   const SurfaceMesh complex = complex_of_labels(image).surface;
   Options options;
   options.size.size = 4;
-  EXPECT_LT(strays(complex, options), 1.1);
+  EXPECT_LT(strays(complex, options), 1.6);  // half of what the size exceeds the voxels by
   options.surface.max_deviation = 0.16;
   EXPECT_LT(strays(complex, options), 0.35);
   options.surface.max_deviation = 5;
