@@ -300,7 +300,7 @@ std::vector<MeshField> fields_to_carry(Session& session, const TetMesh& mesh) {
   if (a.carry.size() == 1 && a.carry[0] == "none") return {};
   if (!some_target_holds_fields(a)) {
     if (is_default) return {};
-    throw OptionError("--carry: no output holds fields; write .vtu, .vtk, .msh or .xdmf");
+    throw OptionError("--carry: no output holds fields; write .vtu, .vtk, .msh, .med, .exo, .cgns or .xdmf");
   }
   // What was not asked for is no reason to fail.
   if (is_default && mesh.is_second_order()) return {};

@@ -207,7 +207,7 @@ std::vector<LineOption> output_options() {
        each([](Arguments& a, const std::string& typed) { a.groups.push_back(group_rule(typed)); })},
       {kWriters, kGroup, "--sample", "IMAGE=NAME",
        "Values of an image as the field NAME of elements (the mean of their voxels) and nodes (linear between voxels), "
-       "in VTU, VTK, MSH and XDMF: --sample ct.nii.gz=HU",
+       "in formats that hold fields: --sample ct.nii.gz=HU",
        each([](Arguments& a, const std::string& typed) {
          a.samples.push_back(named_value(typed, "write IMAGE=NAME, such as ct.nii.gz=HU", true));
        })},
@@ -274,8 +274,8 @@ std::vector<LineOption> size_options() {
        value([](Arguments & a) -> auto& { return a.point_sizes; })},
       {kSizers, kGroup, "--size-field", "FILE[:FIELD]",
        "A mesh of tetrahedra or triangles with a field of sizes, at points or in elements, by its name (VTU, VTK, "
-       "Gmsh, "
-       "MEDIT .sol, TetGen .mtr, XDMF); or all sizes, as `octafront size -o` writes them, edited or not, alone",
+       "Gmsh, MEDIT .sol, TetGen .mtr, XDMF, MED); or all sizes, as `octafront size -o` writes them, edited or not, "
+       "alone",
        value([](Arguments & a) -> auto& { return a.size_field; })},
       {kSizers, kGroup, "--unit", "",
        "What the input's coordinates count, for lengths with a unit; OBJ files may say it. Of CAD files what comes out "
@@ -330,7 +330,7 @@ std::vector<LineOption> adapt_options() {
        value([](Arguments & a) -> auto& { return a.norm; })},
       {"adapt", kGroup, "--carry", "FIELD",
        "Fields of the input that go along, by name and with commas between, or none: linear at points, conservative in "
-       "elements; into VTU, VTK, MSH and XDMF [all]",
+       "elements; into formats that hold fields [all]",
        [](CLI::App& app, const LineOption& o, Arguments& a) {
          return app.add_option(std::string(o.names), a.carry, o.help)->delimiter(',')->type_name(std::string(o.letter));
        }},

@@ -2,8 +2,10 @@
 //   write_samples FOLDER
 // leaves FOLDER/linear/..., FOLDER/second/..., what is text or binary also as text in FOLDER/linear_text/..., the
 // tetrahedra alone in FOLDER/linear_cells/..., one with wedges and pyramids in FOLDER/mixed_linear/... and
-// FOLDER/mixed_second/..., and in each expected.json: what a judge must find.
+// FOLDER/mixed_second/..., and in each expected.json: what a judge must find; with fields in FOLDER/linear_fields/...
+// and so on, for field_judges.py.
 
+#include <octafront/field_files.h>
 #include <octafront/io.h>
 
 #include "formats/parts/mesh_parts.h"
@@ -159,8 +161,31 @@ std::string expected_mixed(const TetMesh& mesh) {
   return out + "\n]}\n";
 }
 
+/// Values that tell their place: that of a node, or the middle of the corners of an element, tetrahedron or not.
+std::vector<MeshField> fields_on(const TetMesh& mesh) {
+  std::vector<MeshField> fields{
+      {"T", false, 1, {}}, {"flow", false, 3, {}}, {"T", true, 1, {}}, {"heat flux", true, 3, {}}};
+  const auto t = [](const Vec3& p) { return 1 + 2 * p.x - 3 * p.y + p.z / 2; };
+  for (const Vec3& p : mesh.points) {
+    fields[0].values.push_back(t(p));
+    for (const double v : {p.x + 1, 2 * p.y - 1, 3 * p.z}) fields[1].values.push_back(v);
+  }
+  const io::MeshParts parts(mesh);
+  const io::MixedCells cells(parts);
+  for (TetIndex tet = 0; tet < mesh.tets.size(); ++tet) {
+    const std::size_t cell = cells.cell_of(tet), corners = 4 + static_cast<std::size_t>(cells.kind(cell));
+    Vec3 middle{};
+    for (std::size_t k = 0; k < corners; ++k)
+      middle = middle + mesh.points[cells.node(cell, k)] / static_cast<double>(corners);
+    fields[2].values.push_back(t(middle));
+    for (const double v : {middle.y + 4, 2 - middle.z, middle.x / 2}) fields[3].values.push_back(v);
+  }
+  return fields;
+}
+
 template <class Wanted>
-void write_those(const fs::path& folder, const TetMesh& mesh, WriteOptions options, const Wanted& wanted) {
+void write_those(const fs::path& folder, const TetMesh& mesh, WriteOptions options, const Wanted& wanted,
+                 const std::vector<MeshField>& fields = {}) {
   fs::create_directories(folder);
   write_text(folder / "expected.json", mesh.wide_cells.empty() ? expected(mesh) : expected_mixed(mesh));
   for (const FormatInfo& info : known_formats()) {
@@ -171,7 +196,7 @@ void write_those(const fs::path& folder, const TetMesh& mesh, WriteOptions optio
                               : folder / (std::string(info.name) + (ending.empty() ? ".msh" : ending));
     fs::create_directories(file.parent_path());
     options.format = info.name;
-    write_mesh(file, mesh, {}, options);
+    write_mesh(file, mesh, fields, {}, options);
   }
 }
 
@@ -180,6 +205,20 @@ void write_all(const std::string& folder, const TetMesh& mesh) {
   write_those(folder + "_text", mesh, {.ascii = true}, [](const FormatInfo& info) { return info.also_text; });
   write_those(folder + "_cells", mesh, {.cells_only = true},
               [](const FormatInfo& info) { return info.name != "openfoam" && !info.writes_surface; });
+}
+
+void write_fields(const std::string& folder, const TetMesh& mesh) {
+  const bool is_mixed = !mesh.wide_cells.empty();
+  write_those(
+      folder + "_fields", mesh, {},
+      [&](const FormatInfo& info) {
+        const bool in_parts_alone = info.name == "pvtu";  // where fields in wedges are lost
+        return info.holds.fields && (!is_mixed || (info.holds.curved_wide_cells && !in_parts_alone));
+      },
+      fields_on(mesh));
+  write_those(
+      folder + "_fields_cells", mesh, {.cells_only = true}, [](const FormatInfo& info) { return info.name == "med"; },
+      fields_on(mesh));
 }
 
 /// In five parts, for parts_judges.py.
@@ -200,6 +239,11 @@ int main(int argc, char** argv) {
   write_parts(folder + "/linear", bent(linear));
   write_parts(folder + "/second", bent(octafront::testing::with_mid_nodes(linear)));
   const TetMesh mixed = octafront::testing::mixed_mesh(3);
+  write_fields(folder + "/linear", bent(linear));
+  write_fields(folder + "/second", bent(octafront::testing::with_mid_nodes(linear)));
+  write_fields(folder + "/mixed_linear", mixed);
+  write_fields(folder + "/mixed_second",
+               octafront::testing::bent_quadratically(octafront::testing::with_mid_nodes(mixed)));
   const auto write_mixed = [&](const std::string& name, const TetMesh& mesh, bool FormatHolds::*kind) {
     write_those(folder + name, mesh, {}, [&](const FormatInfo& info) { return info.holds.*kind; });
     write_those(folder + name + "_text", mesh, {.ascii = true},

@@ -26,7 +26,11 @@ std::uint32_t NetcdfWriter::dimension(std::string name, std::uint64_t length) {
 void NetcdfWriter::variable(std::string name, Type type, std::vector<std::uint32_t> dimensions, ValueAt value,
                             std::vector<Attribute> attributes) {
   Variable v{std::move(name), type, std::move(dimensions), std::move(value), std::move(attributes)};
-  for (const std::uint32_t d : v.dimensions) v.count *= dimensions_[d].second;
+  for (const std::uint32_t d : v.dimensions)
+    if (dimensions_[d].second == 0)
+      v.of_records = true;
+    else
+      v.count *= dimensions_[d].second;
   variables_.push_back(std::move(v));
 }
 
@@ -78,7 +82,7 @@ std::uint64_t NetcdfWriter::bytes_of(const Variable& v) {
 
 void NetcdfWriter::put_header(const std::vector<std::uint64_t>& begins) {
   file_.write(long_counts_ ? std::string_view("CDF\x05") : std::string_view("CDF\x02"));
-  count(0);  // records
+  count(has_record_);
   list_head(kDimensions, dimensions_.size());
   for (const auto& [name, length] : dimensions_) {
     text(name);
@@ -93,8 +97,7 @@ void NetcdfWriter::put_header(const std::vector<std::uint64_t>& begins) {
     for (const std::uint32_t d : v.dimensions) count(d);
     put_attributes(v.attributes);
     put<std::uint32_t>(v.type);
-    // Of a record, the size of one; else of all.
-    count(v.count == 0 ? padded(size_of(v.type)) : bytes_of(v));
+    count(bytes_of(v));
     put(begins[i]);
   }
 }
@@ -115,7 +118,8 @@ void NetcdfWriter::put_values(const Variable& v) {
   file_.write(std::string(padded(bytes) - bytes, '\0'));
 }
 
-void NetcdfWriter::write() {
+void NetcdfWriter::write(bool one_record) {
+  has_record_ = one_record;
   constexpr std::uint64_t kMostOfOne = (std::uint64_t{1} << 32) - 4, kMostLength = (std::uint64_t{1} << 31) - 4;
   for (const Variable& v : variables_) long_counts_ = long_counts_ || bytes_of(v) > kMostOfOne;
   for (const auto& [name, length] : dimensions_) long_counts_ = long_counts_ || length > kMostLength;
@@ -126,11 +130,12 @@ void NetcdfWriter::write() {
   std::uint64_t at = file_.position();
   for (std::size_t i = 0; i < variables_.size(); ++i) {
     begins[i] = at;
-    at += bytes_of(variables_[i]);
+    if (is_written(variables_[i])) at += bytes_of(variables_[i]);
   }
   file_.restart(start);
   put_header(begins);
-  for (const Variable& v : variables_) put_values(v);
+  for (const Variable& v : variables_)
+    if (is_written(v)) put_values(v);
 }
 
 }  // namespace octafront::io

@@ -25,13 +25,14 @@ class NetcdfWriter {
 
   explicit NetcdfWriter(AtomicFile& file) : file_(file) {}
 
-  /// `length` 0: the unlimited dimension, of which nothing is written.
+  /// `length` 0: the unlimited dimension, of which nothing is written, or one record.
   std::uint32_t dimension(std::string name, std::uint64_t length);
   void attribute(Attribute a) { attributes_.push_back(std::move(a)); }
   /// Characters are given as integers.
   void variable(std::string name, Type type, std::vector<std::uint32_t> dimensions, ValueAt value,
                 std::vector<Attribute> attributes = {});
-  void write();
+  /// Variables of records must have been declared behind all others.
+  void write(bool one_record = false);
 
  private:
   struct Variable {
@@ -40,7 +41,8 @@ class NetcdfWriter {
     std::vector<std::uint32_t> dimensions;
     ValueAt value;
     std::vector<Attribute> attributes;
-    std::uint64_t count = 1;
+    std::uint64_t count = 1;  ///< of values, also of a record
+    bool of_records = false;
   };
 
   template <class T>
@@ -52,9 +54,10 @@ class NetcdfWriter {
   void put_header(const std::vector<std::uint64_t>& begins);
   void put_values(const Variable& v);
   static std::uint64_t bytes_of(const Variable& v);
+  bool is_written(const Variable& v) const { return !v.of_records || has_record_; }
 
   AtomicFile& file_;
-  bool long_counts_ = false;
+  bool long_counts_ = false, has_record_ = false;
   std::vector<std::pair<std::string, std::uint64_t>> dimensions_;
   std::vector<Attribute> attributes_;
   std::vector<Variable> variables_;

@@ -189,14 +189,17 @@ constexpr std::array kFormats{
          told_nastran, read_nastran),
     read(with_wedges(mesh("unv", "I-deas universal", ".unv", kAll, "groups (dataset 2477); 17 digits", write_unv)),
          told_unv, read_unv),
-    read(with_wedges(mesh("med", "MED 4", ".med", binary(kAll), "families and groups; needs HDF5", kWriteMed)),
+    read(with_fields(
+             with_wedges(mesh("med", "MED 4", ".med", binary(kAll), "families and groups; needs HDF5", kWriteMed)),
+             false),
          told_hdf5, kReadMed),
     read(with_fields(with_wedges(of_several_files(mesh("xdmf", "XDMF", ".xdmf", binary(kAll),
                                                        "with values in files .h5 beside; needs HDF5", kWriteXdmf))),
                      false),
          told_xdmf, kReadXdmf),
-    with_wedges(mesh("exodus", "Exodus II", ".exo .e .ex2", binary(kSolver), "blocks, node, side and element sets",
-                     write_exodus)),
+    with_fields(with_wedges(mesh("exodus", "Exodus II", ".exo .e .ex2", binary(kSolver),
+                                 "blocks, node, side and element sets", write_exodus)),
+                false),
     with_wedges(mesh("ansys", "Ansys archive", ".cdb", kAnsys, "components; 17 digits", write_ansys)),
     with_linear_wedges(mesh("lsdyna", "LS-DYNA", ".k .key", kSolver,
                             "parts and sets; numbers of at most 16 characters (9 to 15 digits)", write_lsdyna)),
@@ -208,8 +211,9 @@ constexpr std::array kFormats{
       format.is_folder = true;
       return with_parts(with_linear_wedges(format), write_openfoam_parts, check_openfoam_parts);
     }(),
-    with_wedges(mesh("cgns", "CGNS", ".cgns", binary(without_edges(without_sets(kAll))),
-                     "sections and boundary conditions; needs HDF5", kWriteCgns)),
+    with_fields(with_wedges(mesh("cgns", "CGNS", ".cgns", binary(without_edges(without_sets(kAll))),
+                                 "sections and boundary conditions; needs HDF5", kWriteCgns)),
+                false),
     read(with_fields(with_wedges(or_text(
              mesh("vtk", "legacy VTK", ".vtk", binary(kAll), "as VTU, binary or text, uncompressed", write_vtk)))),
          told_vtk, read_vtk),

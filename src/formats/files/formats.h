@@ -58,5 +58,7 @@ std::string endings_that(bool FormatInfo::*can);
 
 /// What of a mesh a format does not hold, in sentences.
 std::vector<std::string> losses(const FormatInfo& format, const MeshParts& mesh);
+/// The same of fields: their names, and the formats that hold them; empty: nothing is lost.
+std::string loss_of_fields(const FormatInfo& format, std::span<const MeshField> fields);
 
 }  // namespace octafront::io

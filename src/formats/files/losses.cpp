@@ -5,6 +5,7 @@
 #include "formats/files/formats.h"
 
 #include <algorithm>
+#include <set>
 
 #include <fmt/core.h>
 
@@ -99,6 +100,19 @@ class Losses {
 
 std::vector<std::string> losses(const FormatInfo& format, const MeshParts& mesh) {
   return Losses(format, mesh).all();
+}
+
+std::string loss_of_fields(const FormatInfo& format, std::span<const MeshField> fields) {
+  if (fields.empty() || format.holds.fields) return {};
+  // One at nodes and one of elements are often of one name.
+  std::set<std::string> known;
+  std::string names, holders;
+  for (const MeshField& field : fields)
+    if (known.insert(field.name).second) names += (names.empty() ? "" : ", ") + in_quotes(field.name);
+  for (const Format& other : formats())
+    if (other.info.holds.fields && other.info.writes_mesh)
+      holders += (holders.empty() ? "" : ", ") + std::string(other.info.name);
+  return fmt::format("{} holds no fields: left out are {}; fields are held by {}", format.title, names, holders);
 }
 
 }  // namespace octafront::io

@@ -168,8 +168,7 @@ std::vector<std::string> write_mesh(const std::string& file, const TetMesh& mesh
   io::MeshOutput out(file, context, options, fields);
   if (fields.size() < given)
     out.note("wedges of second order, or in parts, are written without the fields that do not fit them");
-  if (!fields.empty() && !holds.fields)
-    out.note(fmt::format("{} is written without the fields: VTU, VTK, MSH and XDMF hold them", format.info.title));
+  out.note(io::loss_of_fields(format.info, fields));
   if (format.write_surface != nullptr) {
     format.write_surface(out.file(), boundary_surface(mesh));
     if (!mesh.tets.empty())

@@ -111,7 +111,8 @@ const std::vector<double>& checked(const io::Input& input, const std::vector<dou
   if (names.empty())
     input.fail(fmt::format(
         "has no field of single numbers that are sizes{}; of {} such are read: VTU and VTK arrays, Gmsh's $NodeData "
-        "and $ElementData, the .sol beside a MEDIT mesh, the .mtr beside TetGen's files, attributes of XDMF",
+        "and $ElementData, the .sol beside a MEDIT mesh, the .mtr beside TetGen's files, attributes of XDMF, MED's "
+        "fields",
         wanted.empty() ? "" : ", not " + io::in_quotes(wanted), raw.format));
   if (wanted.empty())
     input.fail(fmt::format("has the fields {}: say which one has the sizes, as {}:{}", listed(names), input.name,

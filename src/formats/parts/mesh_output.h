@@ -6,6 +6,7 @@
 #include "formats/containers/atomic_file.h"
 #include "formats/parts/legal_names.h"
 
+#include <algorithm>
 #include <filesystem>
 #include <memory>
 #include <span>
@@ -47,8 +48,10 @@ class MeshOutput {
   std::filesystem::path folder(const std::filesystem::path& final);
   /// Where one of many files is written that gets this name beside the target in the end: none of them is kept open.
   std::filesystem::path piece_file(const std::string& name);
+  /// Each text once.
   void note(std::string text) {
-    if (!text.empty()) notes_.push_back(std::move(text));
+    if (!text.empty() && std::find(notes_.begin(), notes_.end(), text) == notes_.end())
+      notes_.push_back(std::move(text));
   }
 
   /// All files get their names. Throws OutputError.

@@ -1,5 +1,7 @@
 #pragma once
 
+#include <octafront/mesh_field.h>
+
 #include "formats/parts/mesh_parts.h"
 #include "formats/parts/wide_orders.h"
 
@@ -49,6 +51,12 @@ class MixedCells {
   /// Corners, then mid-side nodes 12 23 31, of a quadrilateral 12 23 34 41.
   std::span<const VertexIndex> face_nodes(std::size_t face, std::array<VertexIndex, 8>& room) const;
   VertexIndex face_node(std::size_t face, std::size_t k) const;
+
+  /// How many points or cells a field has values for; value k of one of them: a cell has that of its first tetrahedron.
+  std::size_t items(const MeshField& field) const { return field.of_elements ? cells() : mesh_.points(); }
+  double value_of(const MeshField& field, std::size_t item, std::size_t k) const {
+    return field.values[(field.of_elements ? first_tet(item) : item) * field.components + k];
+  }
 
   /// Members of a part of elements or faces as cells or faces here, ascending, each once; of others as they are.
   std::vector<std::uint32_t> members(const Part& part) const;

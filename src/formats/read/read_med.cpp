@@ -1,5 +1,6 @@
 // MED 3 and 4: nodes, tetrahedra, wedges, pyramids, faces and edges of the first mesh at its first step; groups by
-// their families. See write_med.cpp for the order of nodes.
+// their families; of fields the last step, of values at nodes and one for each element. See write_med.cpp for the order
+// of nodes.
 
 #include "formats/containers/hdf5_file.h"
 #include "formats/parts/raw_mesh.h"
@@ -55,7 +56,9 @@ constexpr std::array kMedCells{MedCell{"TE4", Kind::kElements, 4, {0, 2, 1, 3}},
 
 class Med {
  public:
-  explicit Med(const Input& input) : file_(input.name, input.name, input.context) { raw_.format = "MED"; }
+  explicit Med(const Input& input) : input_(input), file_(input.name, input.name, input.context) {
+    raw_.format = "MED";
+  }
 
   RawMesh read() {
     const auto meshes = file_.members("/ENS_MAA");
@@ -70,6 +73,7 @@ class Med {
     families_ = is_old ? mesh_ + "/FAS" : "/FAS/" + meshes[0];
     read_nodes();
     read_families();
+    if (input_.field != nullptr) read_fields();
     for (const std::string& type : file_.members(step_ + "/MAI")) read_cells(type);
     make_groups();
     return std::move(raw_);
@@ -116,6 +120,35 @@ class Med {
     for (std::uint32_t v = 0; v < std::min(of.size(), raw_.points.size()); ++v) add_to_groups(of[v], Kind::kNodes, v);
   }
 
+  /// Offers all fields; of the one that is asked for the values at nodes, and where those of elements are.
+  void read_fields() {
+    if (!file_.has("/CHA")) return;
+    for (const std::string& name : file_.members("/CHA")) {
+      const std::string path = "/CHA/" + name;
+      const auto steps = file_.members(path);
+      const std::int64_t components = file_.integer_attribute(path, "NCO");
+      if (steps.empty() || components < 1) continue;
+      if (!raw_.field.offer(input_, name, static_cast<std::uint64_t>(components))) continue;
+      const std::string step = path + "/" + steps.back();
+      const auto each = static_cast<std::size_t>(components);
+      raw_.field.at_points = values_of_field(step + "/NOE", raw_.points.size(), each);
+      const auto places = file_.members(step);
+      if (each == 1 && std::any_of(places.begin(), places.end(), [](const auto& p) { return p.starts_with("MAI."); }))
+        field_ = step;
+    }
+  }
+
+  /// In the order of ours; empty where the file has others than so many for each.
+  std::vector<double> values_of_field(const std::string& place, std::size_t count, std::size_t each) const {
+    const std::string path = place + "/MED_NO_PROFILE_INTERNAL/CO";
+    if (!file_.has(path)) return {};
+    const std::vector<double> columns = file_.reals(path);
+    if (columns.size() != count * each) return {};
+    std::vector<double> values(columns.size());
+    for (std::size_t i = 0; i < columns.size(); ++i) values[i % count * each + i / count] = columns[i];
+    return values;
+  }
+
   void add_to_groups(std::int64_t family, Kind kind, std::uint32_t member) {
     const auto found = groups_of_family_.find(family);
     if (found == groups_of_family_.end()) return;
@@ -139,6 +172,8 @@ class Med {
     if (nodes.size() % type->nodes != 0) file_.fail(fmt::format("{} is no multiple of {}", path, type->nodes));
     std::vector<std::int64_t> family;
     if (file_.has(path + "/FAM")) family = file_.integers(path + "/FAM");
+    std::vector<double> values;
+    if (!field_.empty()) values = values_of_field(field_ + "/MAI." + name, count, 1);
     std::array<VertexIndex, 27> all;
     for (std::size_t i = 0; i < count; ++i) {
       for (std::size_t k = 0; k < type->nodes; ++k) {
@@ -151,6 +186,8 @@ class Med {
       const auto [first, last] = add(type->kind, std::span(all).first(type->nodes));
       for (std::uint32_t member = first; i < family.size() && member < last; ++member)
         add_to_groups(family[i], type->kind, member);
+      // Who asks for the field is told that some have no value.
+      if (!field_.empty()) raw_.field.take(values.empty() ? std::nan("") : values[i], raw_);
     }
   }
 
@@ -186,9 +223,11 @@ class Med {
           raw_.groups.push_back({name, kind, std::move(found->second)});
   }
 
+  const Input& input_;
   Hdf5Reader file_;
   RawMesh raw_;
   std::string mesh_, step_, families_;
+  std::string field_;  ///< the step of the field whose values of elements are asked for; empty: none
   std::map<std::int64_t, std::vector<std::string>> groups_of_family_;
   std::vector<std::string> order_;  ///< names of groups as they are first named
   Groups members_;

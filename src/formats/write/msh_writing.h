@@ -120,20 +120,20 @@ std::string unquoted(std::string_view name);
 bool is_of_gmsh(const MeshField& field);
 void note_fields_left_out(MeshOutput& out);
 
-/// $NodeData and $ElementData; tag_of(field, i) is the tag of point or tetrahedron i, or of element i of `cells`. Their
-/// heads are text in binary files, too.
+/// $NodeData and $ElementData; tag_of(field, i) is the tag of point or tetrahedron i, or of element i of `cells`, which
+/// know of points that are not written. Their heads are text in binary files, too.
 template <class TagOf>
 void write_fields(TextWriter& text, MshNumbers& out, std::span<const MeshField> fields, const TagOf& tag_of,
                   const MixedCells* cells = nullptr) {
   for (const MeshField& field : fields) {
     if (!is_of_gmsh(field)) continue;
     const std::string_view section = field.of_elements ? "ElementData" : "NodeData";
-    const bool of_cells = field.of_elements && cells != nullptr;
-    const std::size_t n = field.components, count = of_cells ? cells->cells() : field.values.size() / n;
+    const std::size_t n = field.components, count = cells != nullptr ? cells->items(field) : field.values.size() / n;
     text.line("${}\n1\n\"{}\"\n1\n0\n3\n0\n{}\n{}", section, unquoted(field.name), n, count);
     for (std::size_t i = 0; i < count; ++i) {
       out.put(static_cast<std::int32_t>(tag_of(field, i)));
-      for (std::size_t k = 0; k < n; ++k) out.put(field.values[(of_cells ? cells->first_tet(i) : i) * n + k]);
+      for (std::size_t k = 0; k < n; ++k)
+        out.put(cells != nullptr ? cells->value_of(field, i, k) : field.values[i * n + k]);
       out.end_record();
     }
     out.close(section);

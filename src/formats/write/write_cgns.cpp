@@ -1,11 +1,13 @@
 // CGNS in HDF5, by the mapping of the SIDS to HDF5 (every node is a group with the attributes name, label, type and
 // flags, and its values in " data"): one base, one unstructured zone, a section of elements per region, patch and
 // curve (and kind of element: wedges, pyramids and quadrilaterals are sections behind), and a boundary condition with a
-// family for each patch. Numbers count from 1; names have 32 characters.
+// family for each patch. Fields are solutions at vertices and in cells, vectors as VelocityX to VelocityZ. Numbers
+// count from 1; names have 32 characters.
 
 #include <octafront/error.h>
 
 #include "formats/containers/hdf5_file.h"
+#include "formats/parts/field_columns.h"
 #include "formats/parts/mixed_cells.h"
 #include "formats/write/writers.h"
 
@@ -24,6 +26,7 @@ using Kind = NamedSet::Kind;
 using Origin = Part::Origin;
 
 constexpr std::size_t kName = 33;
+constexpr NameRules kRules{.longest = 32, .also = " _-.+#()[]{}<>=&%$!?*'\"", .letter_first = false};
 
 class CgnsWriter {
  public:
@@ -31,8 +34,9 @@ class CgnsWriter {
       : file_(out.path_for_library(), out.target().string(), out.context(), true),
         mesh_(mesh),
         cells_(mesh),
-        names_(legal_names(out, mesh, {.longest = 32, .also = " _-.+#()[]{}<>=&%$!?*'\"", .letter_first = false},
-                           std::array{Origin::kRegion, Origin::kPatch, Origin::kCurve})) {}
+        names_(legal_names(out, mesh, kRules, std::array{Origin::kRegion, Origin::kPatch, Origin::kCurve})),
+        of_nodes_(field_columns(out, false, kRules, ComponentNames::kCapitals)),
+        of_cells_(field_columns(out, true, kRules, ComponentNames::kCapitals)) {}
 
   void write() {
     write_root();
@@ -49,6 +53,8 @@ class CgnsWriter {
     node(zone + "/ZoneBC", "ZoneBC_t", "MT");
     for (std::size_t p = 0; p < names_.size(); ++p)
       if (mesh_.parts()[p].origin == Origin::kPatch) write_condition(zone + "/ZoneBC/", p);
+    write_solution(zone + "/Vertex solution", "Vertex", of_nodes_);
+    write_solution(zone + "/Cell solution", "CellCenter", of_cells_);
     file_.close();
   }
 
@@ -132,6 +138,7 @@ class CgnsWriter {
   void write_sections(const std::string& zone, std::size_t p) {
     const Part& part = mesh_.parts()[p];
     const std::vector<std::uint32_t> all = cells_.members(part);
+    if (part.kind == Kind::kElements) order_.insert(order_.end(), all.begin(), all.end());
     ranges_.resize(names_.size());
     ranges_[p][0] = next_;
     for (std::size_t begin = 0, end = 0; begin < all.size(); begin = end) {
@@ -174,10 +181,24 @@ class CgnsWriter {
     text(path + "/GridLocation", "GridLocation_t", "FaceCenter");
   }
 
+  void write_solution(const std::string& path, const char* place, const std::vector<FieldColumn>& columns) {
+    if (columns.empty()) return;
+    node(path, "FlowSolution_t", "MT");
+    text(path + "/GridLocation", "GridLocation_t", place);
+    for (const FieldColumn& column : columns) {
+      node(path + "/" + column.name, "DataArray_t", "R8");
+      data<double>(path + "/" + column.name, {cells_.items(*column.field)}, [&](std::uint64_t i) {
+        return cells_.value_of(*column.field, column.field->of_elements ? order_[i] : i, column.component);
+      });
+    }
+  }
+
   Hdf5Writer file_;
   const MeshParts& mesh_;
   MixedCells cells_;
   std::vector<std::string> names_;
+  std::vector<FieldColumn> of_nodes_, of_cells_;
+  std::vector<std::uint32_t> order_;                 ///< cells as their sections stand
   std::int32_t next_ = 1;                            ///< the number of the next element
   std::vector<std::array<std::int32_t, 2>> ranges_;  ///< of the parts: their first and last elements
 };

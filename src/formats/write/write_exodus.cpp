@@ -1,11 +1,12 @@
 // Exodus II in netCDF classic: a block of elements per region and kind of element, side sets for patches, node sets for
 // sets of nodes and for the nodes of curves, element sets. Elements stand block by block; the map tells their numbers
-// in the mesh. Blocks of pyramids and wedges behind others of their region have names of their own, "layers_wedges",
-// and numbers behind all.
+// in the mesh. Fields are variables of nodes and elements, each number by itself, in one time step. Blocks of pyramids
+// and wedges behind others of their region have names of their own, "layers_wedges", and numbers behind all.
 
 #include <octafront/error.h>
 
 #include "formats/containers/netcdf_writer.h"
+#include "formats/parts/field_columns.h"
 #include "formats/parts/mixed_cells.h"
 #include "formats/write/writers.h"
 
@@ -32,14 +33,19 @@ constexpr std::array<std::int32_t, 5> kSideOfWedge{4, 5, 1, 2, 3}, kSideOfPyrami
 class ExodusWriter {
  public:
   ExodusWriter(MeshOutput& out, const MeshParts& mesh) : file_(out.file()), mesh_(mesh), cells_(mesh) {
-    constexpr std::size_t kLongest = 255, kUsual = 32;
+    constexpr NameRules kRules{.longest = 255, .also = " _-.:#+*/()[]{}%$&!?=<>~^@|;'\"", .letter_first = false};
+    constexpr std::size_t kUsual = 32;
     std::size_t longest = kUsual;
-    LegalNames unique({.longest = kLongest, .also = " _-.:#+*/()[]{}%$&!?=<>~^@|;'\"", .letter_first = false});
+    LegalNames unique(kRules);
     for (const Part& part : mesh.parts()) {
       names_.push_back(unique.legal(part.name));
       longest = std::max(longest, names_.back().size());
     }
     out.note(unique.note());
+    of_nodes_ = field_columns(out, false, kRules, ComponentNames::kUnderscored);
+    of_elements_ = field_columns(out, true, kRules, ComponentNames::kUnderscored);
+    for (const auto* columns : {&of_nodes_, &of_elements_})
+      for (const FieldColumn& column : *columns) longest = std::max(longest, column.name.size());
     length_of_name_ = longest + 1;
   }
 
@@ -56,7 +62,8 @@ class ExodusWriter {
     file_.dimension("four", 4);
     time_ = file_.dimension("time_step", 0);
     declare_nodes();
-    declare_blocks();
+    const std::vector<Block> blocks = make_blocks();
+    declare_blocks(blocks);
     const auto parts_of = [this](auto wanted) {
       std::vector<std::size_t> all;
       for (std::size_t p = 0; p < names_.size(); ++p)
@@ -68,18 +75,21 @@ class ExodusWriter {
     declare_node_sets(parts_of([](Kind k) { return k == Kind::kNodes || k == Kind::kEdges; }));
     declare_side_sets(parts_of([](Kind k) { return k == Kind::kFaces; }));
     declare_element_sets(parts_of([](Kind k) { return k == Kind::kElements; }));
+    declare_names_of_fields(blocks.size());
     file_.variable("time_whole", NetcdfWriter::kDouble, {time_}, [](std::uint64_t) { return Value(0.0); });
-    file_.write();
+    declare_fields(blocks);
+    file_.write(!of_nodes_.empty() || !of_elements_.empty());
   }
 
  private:
   using Type = NetcdfWriter::Type;
 
   void declare_nodes() {
-    const std::uint32_t axes = file_.dimension("num_dim", 3), nodes = file_.dimension("num_nodes", mesh_.points());
+    const std::uint32_t axes = file_.dimension("num_dim", 3);
+    nodes_ = file_.dimension("num_nodes", mesh_.points());
     for (int axis = 0; axis < 3; ++axis)
       file_.variable(
-          std::string("coord") + "xyz" [axis], Type::kDouble, { nodes },
+          std::string("coord") + "xyz" [axis], Type::kDouble, { nodes_ },
           [this, axis](std::uint64_t v) { return Value(mesh_.mesh().points[v][axis]); });
     declare_texts("coor_names", axes, {"x", "y", "z"});
   }
@@ -139,16 +149,15 @@ class ExodusWriter {
     return blocks;
   }
 
-  void declare_blocks() {
-    const std::vector<Block> blocks = make_blocks();
-    const std::uint32_t elements = file_.dimension("num_elem", cells_.cells()),
-                        block_count = file_.dimension("num_el_blk", blocks.size());
+  void declare_blocks(const std::vector<Block>& blocks) {
+    const std::uint32_t elements = file_.dimension("num_elem", cells_.cells());
+    block_count_ = file_.dimension("num_el_blk", blocks.size());
     place_.resize(order_.size());
     for (std::uint32_t i = 0; i < order_.size(); ++i) place_[order_[i]] = i;
     std::vector<std::string> names;
     std::vector<std::int32_t> numbers;
     for (const Block& block : blocks) names.push_back(block.name), numbers.push_back(block.number);
-    declare_list("eb", block_count, std::move(names), std::move(numbers));
+    declare_list("eb", block_count_, std::move(names), std::move(numbers));
     for (std::size_t b = 0; b < blocks.size(); ++b) declare_block(std::to_string(b + 1), blocks[b]);
     file_.variable("elem_num_map", Type::kInt, {elements},
                    [this](std::uint64_t i) { return Value(static_cast<std::int32_t>(order_[i] + 1)); });
@@ -160,6 +169,7 @@ class ExodusWriter {
     const std::uint64_t each = cells_.nodes_per(block.kind);
     const std::uint32_t count = file_.dimension("num_el_in_blk" + n, block.end - block.begin),
                         nodes = file_.dimension("num_nod_per_el" + n, each);
+    sizes_.push_back(count);
     file_.variable(
         "connect" + n, Type::kInt, {count, nodes},
         [this, first = block.begin, each](std::uint64_t i) {
@@ -217,12 +227,44 @@ class ExodusWriter {
     }
   }
 
+  std::uint32_t declare_names(const std::string& prefix, const std::vector<FieldColumn>& columns) {
+    const std::uint32_t count = file_.dimension("num_" + prefix + "_var", columns.size());
+    std::vector<std::string> names;
+    for (const FieldColumn& column : columns) names.push_back(column.name);
+    declare_texts("name_" + prefix + "_var", count, std::move(names));
+    return count;
+  }
+  void declare_names_of_fields(std::size_t blocks) {
+    if (!of_nodes_.empty()) declare_names("nod", of_nodes_);
+    if (of_elements_.empty() || blocks == 0) return;
+    const std::uint32_t count = declare_names("elem", of_elements_);
+    // Every block has every variable.
+    file_.variable("elem_var_tab", Type::kInt, {block_count_, count}, [](std::uint64_t) { return Value(1); });
+  }
+
+  void declare_fields(const std::vector<Block>& blocks) {
+    for (std::size_t f = 0; f < of_nodes_.size(); ++f)
+      file_.variable("vals_nod_var" + std::to_string(f + 1), Type::kDouble, {time_, nodes_},
+                     [this, f](std::uint64_t v) { return value_of(of_nodes_[f], v); });
+    for (std::size_t f = 0; f < of_elements_.size(); ++f)
+      for (std::size_t b = 0; b < blocks.size(); ++b)
+        file_.variable("vals_elem_var" + std::to_string(f + 1) + "eb" + std::to_string(b + 1), Type::kDouble,
+                       {time_, sizes_[b]}, [this, f, first = blocks[b].begin](std::uint64_t i) {
+                         return value_of(of_elements_[f], order_[first + i]);
+                       });
+  }
+  Value value_of(const FieldColumn& column, std::uint64_t item) const {
+    return cells_.value_of(*column.field, item, column.component);
+  }
+
   NetcdfWriter file_;
   const MeshParts& mesh_;
   MixedCells cells_;
   std::vector<std::string> names_;  ///< of the parts
+  std::vector<FieldColumn> of_nodes_, of_elements_;
   std::size_t length_of_name_;
-  std::uint32_t name_ = 0, time_ = 0;
+  std::uint32_t name_ = 0, time_ = 0, nodes_ = 0, block_count_ = 0;  ///< dimensions
+  std::vector<std::uint32_t> sizes_;                                 ///< and those of the blocks
   std::vector<std::uint32_t> order_, place_;  ///< elements block by block, and where each one is there
 };
 

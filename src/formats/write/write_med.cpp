@@ -1,17 +1,20 @@
 // MED 4.0 in HDF5. Each combination of groups that elements are in is a family (negative; of nodes: positive); every
 // region, patch, curve and set is a group of families. MED's tetrahedra turn the other way: their second and third
 // corner are exchanged, and with them the mid-side nodes 12 and 13, and 24 and 34; so do pyramids and wedges. Values
-// are stored component by component.
+// are stored component by component. A field at nodes and one of elements that are of one name are one field of MED's.
 
 #include <octafront/error.h>
 
 #include "formats/containers/hdf5_file.h"
+#include "formats/parts/field_columns.h"
 #include "formats/parts/mixed_cells.h"
 #include "formats/write/writers.h"
 
+#include <algorithm>
 #include <array>
 #include <limits>
 #include <string>
+#include <vector>
 
 #include <fmt/core.h>
 
@@ -20,7 +23,7 @@ namespace {
 
 using Kind = NamedSet::Kind;
 
-constexpr std::size_t kLongestGroup = 80, kLongestFamily = 64;
+constexpr std::size_t kLongestGroup = 80, kLongestFamily = 64, kLongestField = 64;
 
 /// Of a kind of cell: MED's name and number, linear and of second order.
 struct MedSection {
@@ -37,7 +40,10 @@ constexpr std::array<std::uint8_t, 10> kMedTet{0, 2, 1, 3, 6, 5, 4, 7, 9, 8};
 class MedWriter {
  public:
   MedWriter(MeshOutput& out, const MeshParts& mesh)
-      : file_(out.path_for_library(), out.target().string(), out.context(), true), mesh_(mesh), cells_(mesh) {}
+      : file_(out.path_for_library(), out.target().string(), out.context(), true),
+        mesh_(mesh),
+        cells_(mesh),
+        fields_(fields_of(out)) {}
 
   void write() {
     file_.group("/INFOS_GENERALES");
@@ -52,12 +58,14 @@ class MedWriter {
     write_solids();
     write_faces();
     write_edges();
+    if (!fields_.empty()) file_.group("/CHA");
+    for (const MedField& field : fields_) write_field(field);
     file_.close();
   }
 
  private:
   static inline const std::string kMesh = "/ENS_MAA/mesh";
-  static inline const std::string kStep = kMesh + "/-0000000000000000001-0000000000000000001";
+  static inline const std::string kNoTime = "/-0000000000000000001-0000000000000000001", kStep = kMesh + kNoTime;
   static inline const std::string kFamilies = "/FAS/mesh";
 
   void write_head() {
@@ -193,9 +201,77 @@ class MedWriter {
     values<std::int32_t>(cells + "/FAM", 1, count, [&](std::uint64_t, std::uint64_t i) { return family_of(i); });
   }
 
+  /// What has one name: values at nodes, of elements, or both.
+  struct MedField {
+    std::string name;
+    std::array<const MeshField*, 2> of;
+    const MeshField& any() const { return of[0] != nullptr ? *of[0] : *of[1]; }
+  };
+
+  static std::vector<MedField> fields_of(MeshOutput& out) {
+    // A "/" would be one of HDF5's paths.
+    LegalNames names({.longest = kLongestField,
+                      .also = " _-.:+#*()[]{}<>=%$&!?~^@|,;'\"",
+                      .letter_first = false,
+                      .ignores_case = false});
+    std::vector<MedField> all;
+    for (const MeshField& field : out.fields()) {
+      const auto takes = [&](const MedField& f) {
+        return f.of[field.of_elements] == nullptr && f.any().name == field.name &&
+               f.any().components == field.components;
+      };
+      auto at = std::find_if(all.begin(), all.end(), takes);
+      if (at == all.end()) at = all.insert(all.end(), {names.legal(field.name), {}});
+      at->of[field.of_elements] = &field;
+    }
+    out.note(names.note());
+    return all;
+  }
+
+  void write_field(const MedField& field) {
+    const std::string path = "/CHA/" + field.name, step = path + kNoTime;
+    const std::size_t components = field.any().components;
+    file_.group(path);
+    file_.attribute(path, "MAI", "mesh");
+    file_.attribute(path, "NCO", static_cast<std::int32_t>(components));
+    std::string names;
+    for (std::size_t k = 0; k < components; ++k) names += fmt::format("{:16}", component_name(components, k));
+    file_.attribute(path, "NOM", names);
+    file_.attribute(path, "TYP", 6);  // doubles
+    file_.attribute(path, "UNI", std::string(names.size(), ' '));
+    file_.attribute(path, "UNT", "");
+    file_.group(step);
+    for (const char* name : {"NDT", "NOR", "RDT", "ROR"}) file_.attribute(step, name, -1);
+    file_.attribute(step, "PDT", 0.0);
+    if (field.of[0] != nullptr) write_values(step + "/NOE", *field.of[0], 0, mesh_.points());
+    for (const MixedCells::Kind kind : MixedCells::kAllKinds)
+      if (field.of[1] != nullptr && cells_.end(kind) > cells_.begin(kind))
+        write_values(step + "/MAI." + kMedSolids[kind].name[mesh_.second_order()], *field.of[1], cells_.begin(kind),
+                     cells_.end(kind));
+  }
+
+  /// One value for each of a kind of elements.
+  void write_values(const std::string& path, const MeshField& field, std::size_t begin, std::size_t end) {
+    const std::string profile = path + "/MED_NO_PROFILE_INTERNAL";
+    file_.group(path);
+    file_.attribute(path, "GAU", "");
+    file_.attribute(path, "PFL", "MED_NO_PROFILE_INTERNAL");
+    file_.group(profile);
+    file_.attribute(profile, "GAU", "");
+    file_.attribute(profile, "NBR", static_cast<std::int32_t>(end - begin));
+    file_.attribute(profile, "NGA", 1);
+    const std::uint64_t count = end - begin;
+    file_.dataset(profile + "/CO", {count * field.components},
+                  Hdf5Writer::Fill<double>([&](std::uint64_t first, std::span<double> to) {
+                    for (std::uint64_t i = 0; i < to.size(); ++i)
+                      to[i] = cells_.value_of(field, begin + (first + i) % count, (first + i) / count);
+                  }));
+  }
+
   Hdf5Writer file_;
   const MeshParts& mesh_;
   MixedCells cells_;
+  std::vector<MedField> fields_;
   std::int32_t next_family_ = -1;
 };
 

@@ -92,8 +92,10 @@ class SimnibsWriter {
         [&](std::size_t t) { return mesh_.mesh().tets[t]; });
     out_.close("Elements");
     const std::size_t before = faces.tag.size();
-    write_fields(text_, out_, fields_,
-                 [&](const MeshField& field, std::size_t i) { return (field.of_elements ? before : 0) + i + 1; });
+    const MixedCells cells(mesh_);
+    write_fields(
+        text_, out_, fields_,
+        [&](const MeshField& field, std::size_t i) { return (field.of_elements ? before : 0) + i + 1; }, &cells);
   }
 
  private:

@@ -164,18 +164,15 @@ class XdmfWriter {
   void write_fields(TextWriter& out, const std::string& group) {
     std::size_t number = 0;
     for (const MeshField& field : out_.fields()) {
-      const std::uint64_t each = field.components, n = field.of_elements ? cells_.cells() : mesh_.points();
+      const std::uint64_t each = field.components, n = cells_.items(field);
       out.line("      <Attribute AttributeType=\"{}\" Center=\"{}\" Name=\"{}\">", each == 1 ? "Scalar" : "Matrix",
                field.of_elements ? "Cell" : "Node", escaped(field.name));
       const std::string path = fmt::format("{}/field_{}", group, ++number);
       item(out, fmt::format("{} {}", n, each), "Float", 8, h5_, path);
       out << "      </Attribute>\n";
       values_->dataset(path, {n, each}, Hdf5Writer::Fill<double>([&](std::uint64_t first, std::span<double> to) {
-                         for (std::uint64_t k = 0; k < to.size(); ++k) {
-                           const std::uint64_t i = (first + k) / each;
-                           to[k] =
-                               field.values[(field.of_elements ? cells_.first_tet(i) : i) * each + (first + k) % each];
-                         }
+                         for (std::uint64_t k = 0; k < to.size(); ++k)
+                           to[k] = cells_.value_of(field, (first + k) / each, (first + k) % each);
                        }));
     }
   }

@@ -1,8 +1,14 @@
 #include <octafront/error.h>
 #include <octafront/field_files.h>
 
+#include "support/mixed_mesh.h"
+#include "support/rich_mesh.h"
+
+#include <algorithm>
 #include <cmath>
 #include <filesystem>
+#include <fstream>
+#include <iterator>
 #include <string>
 #include <vector>
 
@@ -55,11 +61,12 @@ TEST_F(FieldFiles, WhatIsWrittenIsReadAgain) {
     bool ascii;
     std::size_t fields;  // the readers of MSH and XDMF take single numbers
   };
-  for (const Case& c :
-       {Case{"a.vtu", "", false, 3}, Case{"t.vtu", "", true, 3}, Case{"a.vtk", "", false, 3},
-        Case{"t.vtk", "", true, 3}, Case{"a.msh", "", false, 2}, Case{"t.msh", "", true, 2},
-        Case{"b.msh", "msh22", false, 2}, Case{"c.msh", "msh22", true, 2}, Case{"a.xdmf", "", false, 2}}) {
+  for (const Case& c : {Case{"a.vtu", "", false, 3}, Case{"t.vtu", "", true, 3}, Case{"a.vtk", "", false, 3},
+                        Case{"t.vtk", "", true, 3}, Case{"a.msh", "", false, 2}, Case{"t.msh", "", true, 2},
+                        Case{"b.msh", "msh22", false, 2}, Case{"c.msh", "msh22", true, 2}, Case{"a.xdmf", "", false, 2},
+                        Case{"a.med", "", false, 3}}) {
     if (c.name.ends_with("xdmf") && !is_known("xdmf")) continue;
+    if (c.name.ends_with("med") && !is_known("med")) continue;
     SCOPED_TRACE(c.name + " " + c.format);
     const std::vector<MeshField> fields = some_fields();
     write_mesh(path_of(c.name), pair_of_tets(), fields, {}, {.format = c.format, .ascii = c.ascii});
@@ -113,7 +120,9 @@ TEST_F(FieldFiles, WhatAFormatCannotHoldIsSaid) {
   EXPECT_FALSE(format_for("a.inp").holds.fields);
   const auto notes = write_mesh(path_of("a.inp"), pair_of_tets(), fields);
   ASSERT_FALSE(notes.empty());
-  EXPECT_NE(notes[0].find("without the fields"), std::string::npos) << notes[0];
+  EXPECT_NE(notes[0].find("holds no fields: left out are \"T\", \"u v\", \"rho\"; fields are held by vtu, msh"),
+            std::string::npos)
+      << notes[0];
   const std::vector<MeshField> pair{{"pair", false, 2, std::vector<double>(10, 1)}};
   const auto of_gmsh = write_mesh(path_of("a.msh"), pair_of_tets(), pair);
   ASSERT_FALSE(of_gmsh.empty());
@@ -121,6 +130,63 @@ TEST_F(FieldFiles, WhatAFormatCannotHoldIsSaid) {
   const std::vector<MeshField> few{{"few", false, 1, {1, 2}}};
   EXPECT_THROW(write_mesh(path_of("few.vtu"), pair_of_tets(), few), OutputError);
   EXPECT_FALSE(std::filesystem::exists(path_of("few.vtu")));
+}
+
+/// The middle of the corners of the element that a tetrahedron is, or is a part of.
+Vec3 middle_of(const TetMesh& mesh, TetIndex t) {
+  std::vector<VertexIndex> corners(mesh.tets[t].begin(), mesh.tets[t].end());
+  for (const WideCell& cell : mesh.wide_cells)
+    if (t >= cell.first && t < cell.first + cell.tet_count)
+      corners.assign(cell.nodes.begin(), cell.nodes.begin() + cell.tet_count + 3);
+  Vec3 middle{};
+  for (const VertexIndex v : corners) middle = middle + mesh.points[v] / static_cast<double>(corners.size());
+  return middle;
+}
+
+double value_at(const Vec3& p) {
+  return 1 + p.x - 3 * p.y + 5 * p.z;
+}
+
+/// One name, at points and in elements.
+std::vector<MeshField> fields_by_place(const TetMesh& mesh) {
+  std::vector<MeshField> fields{{"T", false, 1, {}}, {"T", true, 1, {}}};
+  for (const Vec3& p : mesh.points) fields[0].values.push_back(value_at(p));
+  for (TetIndex t = 0; t < mesh.tets.size(); ++t) fields[1].values.push_back(value_at(middle_of(mesh, t)));
+  return fields;
+}
+
+TEST_F(FieldFiles, MedKeepsThemOfSecondOrderAndInWedges) {
+  if (!is_known("med")) GTEST_SKIP();
+  for (const TetMesh& mesh : {testing::with_mid_nodes(testing::rich_mesh(3)), testing::mixed_mesh(3)}) {
+    EXPECT_TRUE(write_mesh(path_of("a.med"), mesh, fields_by_place(mesh)).empty());
+    const TetMesh again = read_mesh(path_of("a.med"));
+    ASSERT_EQ(again.wide_cells.size(), mesh.wide_cells.size());
+    const FieldsOfFile read = read_fields(path_of("a.med"), again);
+    ASSERT_EQ(read.fields.size(), 2u);
+    const std::vector<MeshField> right = fields_by_place(again);
+    for (std::size_t f = 0; f < 2; ++f) {
+      EXPECT_EQ(read.fields[f].of_elements, right[f].of_elements);
+      ASSERT_EQ(read.fields[f].values.size(), right[f].values.size());
+      for (std::size_t i = 0; i < right[f].values.size(); ++i)
+        ASSERT_NEAR(read.fields[f].values[i], right[f].values[i], 1e-12);
+    }
+  }
+}
+
+TEST_F(FieldFiles, NamesAreMadeLegalOnce) {
+  const TetMesh mesh = pair_of_tets();
+  std::vector<MeshField> fields{{"a/b", false, 1, std::vector<double>(5, 1)}, {"a/b", true, 1, {1, 2}}};
+  for (const char* name : {"a.med", "a.cgns"}) {
+    if (!is_known(std::string_view(name).substr(2))) continue;
+    const auto notes = write_mesh(path_of(name), mesh, fields);
+    EXPECT_EQ(std::ranges::count_if(notes, [](const std::string& n) { return n.ends_with("\"a/b\" is a_b"); }), 1);
+  }
+  // A tail of components stays whole behind a name that is cut.
+  fields = {{std::string(300, 'n'), false, 3, std::vector<double>(15, 1)}};
+  write_mesh(path_of("a.exo"), mesh, fields);
+  std::ifstream file(path_of("a.exo"), std::ios::binary);
+  const std::string bytes((std::istreambuf_iterator<char>(file)), std::istreambuf_iterator<char>());
+  EXPECT_NE(bytes.find(std::string(200, 'n') + "_z"), std::string::npos);
 }
 
 TEST_F(FieldFiles, FieldsOfAnotherMeshAreRefused) {
