@@ -5,6 +5,7 @@
 #include <octafront/second_order.h>
 #include <octafront/solver_checks.h>
 
+#include <array>
 #include <cstdint>
 #include <optional>
 #include <string>
@@ -56,6 +57,14 @@ struct RegionSummary {
   QualitySummary quality;
 };
 
+/// All walls between two regions of a mesh with several.
+struct WallSummary {
+  std::array<std::string, 2> regions;  ///< names; "outside"
+  std::uint64_t triangles = 0;
+  double area = 0;    ///< input unit squared
+  double needed = 0;  ///< regular triangles of SizeOptions::size that have this area
+};
+
 /// The boundary layers of one wall.
 struct LayerSummary {
   std::string patch;   ///< its name; may be empty
@@ -81,8 +90,9 @@ struct Report {
   double expected_tets = 0;            ///< predicted by the sizes before the volume is meshed
   QualitySummary quality;              ///< of the elements with straight edges
   std::vector<RegionSummary> regions;  ///< by number; empty if the mesh has only one
-  std::vector<LayerSummary> layers;    ///< by patch; empty: none were asked for
-  SecondOrderSummary second_order;     ///< edges == 0: the mesh is linear
+  std::vector<WallSummary> walls;    ///< those with most triangles over what is needed first; empty: no size was given
+  std::vector<LayerSummary> layers;  ///< by patch; empty: none were asked for
+  SecondOrderSummary second_order;   ///< edges == 0: the mesh is linear
   SizeSummary surface_edges, volume_edges;
   double wall_seconds = 0, cpu_seconds = 0;
   std::uint64_t peak_memory_bytes = 0;  ///< of the process

@@ -14,6 +14,9 @@
 
 #include <algorithm>
 #include <cmath>
+#include <functional>
+#include <map>
+#include <utility>
 
 #include <fmt/core.h>
 
@@ -200,9 +203,27 @@ void keep_mesh_volumes(const Prepared& input, const std::vector<double>& wanted,
   });
 }
 
-void describe_needed(double size, Report& report) {
-  constexpr double kRegularTet = 0.11785113;  // its volume over the cube of its edge
+void describe_needed(const SurfaceMesh& walls, double size, Report& report) {
+  constexpr double kRegularTet = 0.11785113;      // its volume over the cube of its edge
+  constexpr double kRegularTriangle = 0.4330127;  // its area over the square of its edge
   for (RegionSummary& region : report.regions) region.needed = region.volume / (kRegularTet * size * size * size);
+  if (report.regions.size() < 2) return;
+  std::map<Sides, WallSummary> between;
+  for (std::size_t t = 0; t < walls.triangles.size(); ++t) {
+    Sides sides = walls.sides_of(t);
+    if (sides[0] > sides[1]) std::swap(sides[0], sides[1]);
+    const auto& [a, b, c] = walls.triangles[t];
+    WallSummary& wall = between[sides];
+    ++wall.triangles;
+    wall.area += 0.5 * length(cross(walls.points[b] - walls.points[a], walls.points[c] - walls.points[a]));
+  }
+  for (auto& [sides, wall] : between) {
+    for (int i = 0; i < 2; ++i) wall.regions[i] = sides[i] == kNone ? "outside" : region_name(walls, sides[i]);
+    wall.needed = wall.area / (kRegularTriangle * size * size);
+    report.walls.push_back(std::move(wall));
+  }
+  const auto surplus = [](const WallSummary& w) { return static_cast<double>(w.triangles) - w.needed; };
+  std::ranges::stable_sort(report.walls, std::ranges::greater(), surplus);
 }
 
 void describe_input_volumes(const Prepared& input, const Filled& filled, Report& report) {

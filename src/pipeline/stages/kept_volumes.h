@@ -19,8 +19,8 @@ void keep_surface_volumes(const Prepared& input, Remeshed& made, const Run& run,
 /// The same of a finished linear mesh, since improvement has moved its boundary: as far as its elements stay good.
 void keep_mesh_volumes(const Prepared& input, const std::vector<double>& wanted, Filled& filled, Run& run);
 
-/// Enters how many elements of a size that was given each region needs.
-void describe_needed(double size, Report& report);
+/// Enters how many elements of a size that was given each region needs, and of several their walls.
+void describe_needed(const SurfaceMesh& walls, double size, Report& report);
 
 /// Enters the volumes of the input's regions into the report, beside those of the mesh.
 void describe_input_volumes(const Prepared& input, const Filled& filled, Report& report);

@@ -73,6 +73,14 @@ Json json_of(const std::vector<RegionSummary>& regions) {
   return all;
 }
 
+Json json_of(const std::vector<WallSummary>& walls) {
+  Json all = Json::array();
+  for (const WallSummary& w : walls)
+    all.push_back(
+        {{"regions", w.regions}, {"triangles", w.triangles}, {"area", w.area}, {"needed_triangles", w.needed}});
+  return all;
+}
+
 Json json_of(const SizeSummary& s) {
   return {{"edges", s.edges}, {"mean_ratio", s.mean_ratio}, {"share_within_0.7_1.4", s.share_within}};
 }
@@ -125,6 +133,7 @@ std::string to_json(const Report& report) {
   if (report.tets > 0) {
     j["quality"] = json_of(report.quality);
     if (!report.regions.empty()) j["regions"] = json_of(report.regions);
+    if (!report.walls.empty()) j["walls"] = json_of(report.walls);
     if (!report.layers.empty()) j["layers"] = json_of(report.layers);
     if (report.second_order.edges > 0) j["second_order"] = json_of(report.second_order);
     j["volume_edges"] = json_of(report.volume_edges);

@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <span>
 
 #include <fmt/core.h>
 
@@ -140,6 +141,24 @@ std::string region_lines(const std::vector<RegionSummary>& regions) {
   return out;
 }
 
+/// The walls that have many more triangles than the size needs; none where that is little of all.
+std::string wall_lines(const std::vector<WallSummary>& walls) {
+  constexpr std::size_t kMost = 5;
+  constexpr double kMany = 1.3, kPart = 0.02;  // times what is needed; of the triangles of all walls
+  double all = 0;
+  for (const WallSummary& w : walls) all += static_cast<double>(w.triangles);
+  std::string out;
+  for (const WallSummary& w : std::span(walls).first(std::min(walls.size(), kMost))) {
+    const auto made = static_cast<double>(w.triangles);
+    if (made < kMany * w.needed || made - w.needed < kPart * all) continue;
+    out += fmt::format("  {:<60.60}{:>12}{:>12.0f}\n", fmt::format("{} | {}", w.regions[0], w.regions[1]),
+                       grouped(w.triangles), w.needed);
+  }
+  return out.empty()
+             ? out
+             : fmt::format("{:<62}{:>12}{:>12}\n", "walls with most over the size", "triangles", "by size") + out;
+}
+
 std::string size_line(const char* what, const SizeSummary& s) {
   return fmt::format("  {:<16}mean {:.3f} of the length wanted, {:.1f} % within 0.7 - 1.4\n", what, s.mean_ratio,
                      100 * s.share_within);
@@ -155,7 +174,7 @@ std::string to_table(const Report& report) {
            " expected from the sizes\n";
   if (report.boundary_faces > 0) out += volume_line(report);
   if (report.tets > 0) out.append("\n").append(quality_lines(report.quality));
-  if (report.regions.size() > 1) out += region_lines(report.regions);
+  if (report.regions.size() > 1) out += region_lines(report.regions) + wall_lines(report.walls);
   if (!report.layers.empty()) out += layer_lines(report.layers);
   if (report.second_order.edges > 0) out += second_order_lines(report.second_order);
   if (report.surface_edges.edges > 0) out += "edge lengths\n" + size_line("surface", report.surface_edges);
