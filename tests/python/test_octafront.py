@@ -353,7 +353,7 @@ class Images(Case):
                        check=True, stdout=subprocess.DEVNULL)
         mesh = octafront.mesh_image(file, labels=names, size=14)
         self.assertEqual(mesh.report["hash"], json.loads(report.read_text())["hash"])
-        self.assertEqual(mesh.names["regions"], ["skin", "skull", "csf", "brain", "lesion"])
+        self.assertEqual(mesh.names["regions"], ["brain", "csf", "skull", "skin", "lesion"])
         self.assertEqual(mesh.report["image"]["frame"], "RAS")
         with self.assertRaisesRegex(octafront.InputError, "no such file"):
             octafront.image_surface(self.folder / "none.nii")
