@@ -281,6 +281,25 @@ class Images(unittest.TestCase):
         for part in ("(15, 15, 23) is 14 from the skin", "nearest at (15, 15, 9)", "RAS or LPS"):
             self.assertIn(part, far)
 
+    def test_surfaces_of_labels_go_before_voxels(self):
+        n, values = 20, []
+        for k in range(n):
+            for j in range(n):
+                for i in range(n):
+                    values.append(7 if sum((x - 9.5) ** 2 for x in (i, j, k)) < 36 else 0)
+        image, ball = self.write("ball.nii", nifti((n, n, n), values)), self.dir / "ball.stl"
+        self.run_cli("surface", "(x-9.5)^2 + (y-9.5)^2 + (z-9.5)^2 < 49", "--box", "0,0,0,19,19,19", "--size", "1", "-o", ball)
+        made = self.volumes(image, "--surface-of", f"7={ball}")
+        self.assertAlmostEqual(made["label 7"] / (4 / 3 * 3.1416 * 343), 1, delta=.02)
+        said = self.run_cli("check", image, "--surface-of", f"label 7={ball}").stdout
+        self.assertRegex(said, r'"label 7" follows .*ball.stl: \d+ voxels get')
+        self.assertIn("does not have", self.run_cli("check", image, "--surface-of", f"8={ball}", status=2).stderr)
+        for bad in ("ball.stl", "=ball.stl", "7="):
+            self.run_cli("check", image, "--surface-of", bad, status=2)
+        self.run_cli("check", image, "--surface-of", f"7={self.dir}/none.stl", status=3)
+        self.run_cli("check", ball, "--surface-of", f"7={ball}", status=2)
+        self.run_cli("mesh", image, "--surface-of", f"7={ball}", "--periodic", "xyz", "-o", self.dir / "x.vtu", status=2)
+
     def test_cropping_and_resampling(self):
         image = self.two_boxes()
         cropped = self.volumes(image, "--crop", "0:5,:,:")
