@@ -56,6 +56,13 @@ Electrode electrode_of(const std::string& typed) {
   return made;
 }
 
+FileOfLabel surface_of_label(const std::string& typed) {
+  const std::size_t equals = typed.find('=');
+  if (equals == 0 || equals == std::string::npos || equals + 1 == typed.size())
+    refuse("--surface-of", typed, "has no label or no file; write LABEL=FILE, such as 2=pial.stl");
+  return {typed.substr(0, equals), typed.substr(equals + 1)};
+}
+
 }  // namespace
 
 GreyBand grey_band(const std::string& typed) {
@@ -131,6 +138,12 @@ std::vector<LineOption> image_line_options() {
        "A disc on the skin at this point, a region of its own; may be repeated",
        to_image([](ImageIntake& image, const std::string& typed) {
          image.regions.electrodes.push_back(electrode_of(typed));
+       })},
+      {kCommands, kGroup, "--surface-of", "LABEL=FILE",
+       "A closed surface of a label, by its name or number: near it voxels follow it, and vertices lie on it; may be "
+       "repeated",
+       to_image([](ImageIntake& image, const std::string& typed) {
+         image.surface_files.push_back(surface_of_label(typed));
        })},
       {kCommands, kGroup, "--crop", "I0:I1,J0:J1,K0:K1",
        "Only these voxels along i, j and k, counted from 0, the last ones too; an end that is missing stays",

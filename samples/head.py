@@ -6,10 +6,11 @@ import struct
 
 SIZE, SPACING = (44, 56, 46), (4.0, 4.0, 4.0)
 # The half axes of each layer in mm, from the outside; the neck leaves the image at its bottom.
-LAYERS = (("skin", 1, (76, 98, 88)), ("skull", 2, (68, 90, 80)), ("csf", 3, (60, 82, 72)), ("brain", 4, (54, 76, 66)))
-LESION = (5, (20, 14, 10), 9)  # label, middle, radius
-NECK = (1, 44)  # label, radius
-HOUNSFIELD = {0: -1000, 1: 40, 2: 900, 3: 5, 4: 35, 5: 60}
+# Numbers are those of SimNIBS, the brain all grey matter; the lesion has one that it leaves to users.
+LAYERS = (("skin", 5, (76, 98, 88)), ("skull", 4, (68, 90, 80)), ("csf", 3, (60, 82, 72)), ("brain", 2, (54, 76, 66)))
+LESION = (11, (20, 14, 10), 9)  # label, middle, radius
+NECK = (5, 44)  # label, radius
+HOUNSFIELD = {0: -1000, 5: 40, 4: 900, 3: 5, 2: 35, 11: 60}
 
 
 def label_at(x, y, z):
@@ -65,4 +66,4 @@ def ct():
 
 
 def names():
-    return "".join(f"{value} {name}\n" for name, value, _ in LAYERS) + f"{LESION[0]} lesion\n"
+    return "".join(f"{value} {name}\n" for name, value, _ in reversed(LAYERS)) + f"{LESION[0]} lesion\n"

@@ -38,6 +38,11 @@ struct VoxelRange {
   std::optional<std::uint32_t> first = {}, last = {};
 };
 
+/// A file and the label that it is of, by name or number.
+struct FileOfLabel {
+  std::string label, file;
+};
+
 /// How an image becomes a domain.
 struct ImageIntake {
   ImageChoice choice;                 ///< of several images in a file, a folder or a project
@@ -52,6 +57,8 @@ struct ImageIntake {
   /// square of `size`, if that is given and the image is not repeated.
   std::string contacts = {};
   std::optional<double> size = {};  ///< the edge length that elements will have, in the unit of the file, > 0
+  /// Closed surfaces that read_surface() knows, behind those in `regions`: ImageRegions::surfaces.
+  std::vector<FileOfLabel> surface_files = {};
 };
 
 /// How a CAD file becomes a domain.

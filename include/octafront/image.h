@@ -182,7 +182,9 @@ struct Electrode {
 
 /// Adds a region for each electrode, "electrode" or "electrode 2", whose label is above 100 and all others: voxels
 /// outside of all regions that lie no farther from them than it is high, within its radius around the line that leads
-/// outward where the body is nearest. Throws OptionError for one that has no voxel.
+/// outward where the skin is nearest. What several would have the first one gets. Notes say how many voxels each has,
+/// and where it stands if its point is off the skin. Throws OptionError for one that gets no voxel, or whose point is
+/// farther from the skin than its radius, its height and five voxels.
 LabelImage with_electrodes(LabelImage image, const std::vector<Electrode>& electrodes);
 
 }  // namespace octafront

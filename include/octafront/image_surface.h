@@ -3,6 +3,7 @@
 #include <octafront/complex.h>
 #include <octafront/image.h>
 #include <octafront/no_context.h>
+#include <octafront/surface_mesh.h>
 
 #include <array>
 #include <cstdint>
@@ -67,6 +68,13 @@ Complex complex_of_bands(const Image& image, const std::vector<GreyBand>& bands,
 /// The voxels of bands as labels: label b for bands[b], whose `value` is b. Throws InputError as complex_of_bands.
 LabelImage labels_of_bands(const Image& image, const std::vector<GreyBand>& bands);
 
+/// A closed surface that bounds a label more truly than voxels do, such as FreeSurfer's of the cortex.
+struct SurfaceOfLabel {
+  std::string label;      ///< its name, or its number
+  SurfaceMesh surface;    ///< closed, in the coordinates of the image
+  std::string name = {};  ///< for messages and notes: that of the file
+};
+
 /// What of an image becomes regions.
 struct ImageRegions {
   /// kAuto: grey if bands are given, labels if anything about labels is, else what looks_like_labels() says.
@@ -76,7 +84,11 @@ struct ImageRegions {
   std::vector<GreyBand> bands;  ///< one without a name is "body", several "band 1" and so on
   CleanOptions clean;
   std::vector<Electrode> electrodes = {};  ///< of labels: set on when they are clean
-  bool closed_at_box = true;               ///< off: regions that reach the edge of the image are refused
+  /// Of labels: within two voxels of these surfaces they say which voxels a label has, and vertices between it and what
+  /// is around it lie on them. A label that lies within another's surface for the most part counts as part of that; so
+  /// surfaces may lie within each other. Several of one label are parts of it.
+  std::vector<SurfaceOfLabel> surfaces = {};
+  bool closed_at_box = true;  ///< off: regions that reach the edge of the image are refused
   PeriodicMargin margin = {0, 0, 0};
 };
 
@@ -84,8 +96,9 @@ struct ImageRegions {
 ImageRegions::Kind kind_of(const Image& image, const ImageRegions& regions);
 
 /// From an image to its complex: complex_of_labels() or complex_of_bands(), after cleaning. Notes say what became of
-/// labels, what was cleaned, and which regions end at the edge of the image. Throws InputError, also for a grey image
-/// without bands; OptionError for options of the other kind; Cancelled.
+/// labels, what was cleaned, what surfaces changed, and which regions end at the edge of the image. Throws InputError,
+/// also for a grey image without bands, and for a surface that is open or far from its label; OptionError for options
+/// of the other kind, and a surface of a label that there is not; Cancelled.
 Complex complex_of_image(const Image& image, const ImageRegions& regions = {},
                          const RunContext& context = no_context());
 

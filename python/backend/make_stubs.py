@@ -233,6 +233,7 @@ FURTHER = {
     "labels": "Mapping[int, str] | Path | None = None", "ignore": "Sequence[int] | int | None = None",
     "merge": "Mapping[str, Sequence[int]] | None = None", "iso": "float | None = None",
     "bands": "Mapping[str, tuple[float | None, float | None]] | None = None",
+    "surface_of": "Mapping[str | int, Path | Sequence[Path]] | None = None",
     "crop": "Sequence[Sequence[int | None]] | None = None", "resample": "float | Sequence[float] | None = None",
     "box": "str | npt.ArrayLike = ''",
     "regions": "Places | None = None", "point_sizes": "npt.ArrayLike | Path | None = None",
@@ -255,6 +256,7 @@ OF_IMAGES = """\
     islands: float | None = None,
     holes: float | None = None,
     close_voxels: int | None = None,
+    surface_of: Mapping[str | int, Path | Sequence[Path]] | None = None,
     crop: Sequence[Sequence[int | None]] | None = None,
     resample: float | Sequence[float] | None = None,
     closed_at_box: bool = True"""

@@ -69,7 +69,7 @@ def mesh_file(path, **keywords):
 
 
 def image_surface(image, affine=None, *, spacing=None, series=0, kind="auto", labels=None, ignore=None, merge=None,
-                  iso=None, bands=None, islands=None, holes=None, contacts=None, close_voxels=None, crop=None,
+                  iso=None, bands=None, islands=None, holes=None, contacts=None, close_voxels=None, surface_of=None, crop=None,
                   resample=None, closed_at_box=True, progress=None, threads=0):
     """The surfaces between the labels of an image, or between bands of its grey values: a Surface with a region for
     each, named. Smooth, volumes of labels kept. report["regions"] has their names and volumes, report["notes"] what was
@@ -89,6 +89,8 @@ def image_surface(image, affine=None, *, spacing=None, series=0, kind="auto", la
     contacts: where labels touch in spots below this area, or in strips of a voxel or two, a label beside them comes
         between; "keep": nowhere. Without a value nowhere here, and in mesh_image() below the square of the size.
     close_voxels: gaps toward the outside close that are up to twice as many voxels wide.
+    surface_of: {"grey matter": "pial.stl"}: a file, or several, with closed surfaces of a label, by its name or number, in
+        the coordinates of the image: within two voxels of them voxels follow them, and vertices lie on them.
     crop: ((i0, i1), (j0, j1), (k0, k1)), counted from 0, the last ones too; None for an end that stays.
     resample: spacing of the voxels to work with, one number or three.
     closed_at_box: regions that reach the edge of the image end flat there; False: they are refused.
@@ -98,7 +100,7 @@ def image_surface(image, affine=None, *, spacing=None, series=0, kind="auto", la
     >>> octafront.image_surface(labels, spacing=(1, 1, 2)).save("organs.ply")
     """
     regions = {"kind": kind, "labels": labels, "ignore": ignore, "merge": merge, "iso": iso, "bands": bands,
-               "islands": islands, "holes": holes, "contacts": None if contacts is None else str(contacts), "close_voxels": close_voxels, "crop": crop, "resample": resample,
+               "islands": islands, "holes": holes, "contacts": None if contacts is None else str(contacts), "close_voxels": close_voxels, "surface_of": surface_of, "crop": crop, "resample": resample,
                "closed_at_box": closed_at_box}
     return _surface_of_image(image, affine, spacing, series, regions, threads, progress)
 

@@ -14,7 +14,7 @@ _U8, _I16, _U16, _I32, _F32 = 3, 4, 5, 6, 7
 _WHOLE = (("uint8", _U8), ("int16", _I16), ("uint16", _U16), ("int32", _I32))
 
 # Keywords that the library takes in other words.
-_REWORDED = ("labels", "merge", "iso", "bands", "crop")
+_REWORDED = ("labels", "merge", "iso", "bands", "crop", "surface_of")
 
 
 def surface_of_image(image, affine, spacing, series, regions, threads=0, progress=None):
@@ -117,6 +117,9 @@ def described(regions):
     said.update(_names(regions.get("labels")))
     if regions.get("merge"):
         said["merge"] = [[name, _plain(list(values))] for name, values in dict(regions["merge"]).items()]
+    if regions.get("surface_of"):
+        said["surface_of"] = [[str(label), text_of(file_of(file))] for label, files in dict(regions["surface_of"]).items()
+                              for file in ([files] if is_file(files) else files)]
     bands = [] if regions.get("iso") is None else [["", _plain(regions["iso"]), None]]
     for name, (lo, hi) in dict(regions.get("bands") or {}).items():
         bands.append([name, _finite(lo), _finite(hi)])

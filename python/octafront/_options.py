@@ -30,6 +30,8 @@ _OF_INTAKE = [
     ("iso", "Of a grey image: what has this value or more is the region \"body\""),
     ("bands", "Of a grey image: {\"skin\": (-200, 226), \"bone\": (226, None)}, values from the first up to below the "
               "second; None: no limit"),
+    ("surface_of", "Of an image of labels: {\"grey matter\": \"pial.stl\"}, closed surfaces of labels, by names or numbers, or "
+                   "lists of files: near them voxels follow them, and vertices lie on them"),
     ("crop", "Of an image: ((i0, i1), (j0, j1), (k0, k1)), counted from 0, the last ones too; None for an end that stays"),
     ("resample", "Spacing of the voxels to work with, one number or three"),
 ]

@@ -2,6 +2,7 @@
 import gzip
 import json
 import pathlib
+import re
 import struct
 import subprocess
 import sys
@@ -67,9 +68,9 @@ class Images(unittest.TestCase):
 
     def test_labels_become_regions_with_names_and_volumes(self):
         named = self.volumes(LABELS, "--labels", NAMES)
-        self.assertEqual(list(named), ["skin", "skull", "csf", "brain", "lesion"])
+        self.assertEqual(list(named), ["brain", "csf", "skull", "skin", "lesion"])
         voxels = {entry["value"]: entry["voxels"] for entry in self.info(LABELS)["labels"]}
-        for value, (name, volume) in enumerate(named.items(), 1):
+        for value, (name, volume) in zip((2, 3, 4, 5, 11), named.items()):
             self.assertAlmostEqual(volume / (64 * voxels[value]), 1, 2, name)
         self.assertEqual(list(self.volumes(self.two_boxes())), ["label 3", "label 7"])
 
@@ -206,9 +207,9 @@ class Images(unittest.TestCase):
         self.assertEqual(list(self.volumes(LABELS, "--image", "grey", "--iso", "3.5")), ["body"])
 
     def test_what_reaches_the_edge_is_said_or_refused(self):
-        self.assertIn('closed flat at the edge of the image: "label 1" (first k)', self.run_cli("check", LABELS).stdout)
+        self.assertIn('closed flat at the edge of the image: "label 5" (first k)', self.run_cli("check", LABELS).stdout)
         message = self.run_cli("check", LABELS, "--closed-at-box=no", status=3).stderr
-        self.assertIn("label 1", message)
+        self.assertIn("label 5", message)
         self.run_cli("check", self.two_boxes(), "--closed-at-box=no")
         self.run_cli("check", LABELS, "--closed-at-box")
 
@@ -247,14 +248,57 @@ class Images(unittest.TestCase):
     def test_electrodes_are_discs_on_the_skin(self):
         size = (30, 30, 20)
         image = self.write("plate.nii", nifti(size, boxes(size, (5, (2, 2, 2), (28, 28, 10)))))
-        made = self.volumes(image, "--electrode", "15,15,30:6:3", "--electrode", "3,15,6:3:2")
+        made = self.volumes(image, "--electrode", "15,15,20:6:3", "--electrode", "3,15,6:3:2")
         self.assertEqual(list(made), ["label 5", "electrode 1", "electrode 2"])
         self.assertAlmostEqual(made["electrode 1"] / (3.1416 * 36 * 3), 1, 1)
-        self.assertIn("electrode 1: ", self.run_cli("check", image, "--electrode", "15,15,30:6:3", "--electrode", "3,15,6:3:2").stdout)
+        self.assertIn("electrode 1: ", self.run_cli("check", image, "--electrode", "15,15,20:6:3", "--electrode", "3,15,6:3:2").stdout)
         self.assertEqual(list(self.volumes(image, "--electrode", "15,15,9:6:3")), ["label 5", "electrode"])
         for bad in ("1,2:3:4", "1,2,3:4", "1,2,3:0:4", "1,2,3:x:4"):
             self.run_cli("check", image, "--electrode", bad, status=2)
         self.run_cli("check", CT, "--band", "100:", "--electrode", "0,0,0:5:5", status=2)
+
+    def test_electrodes_say_what_they_got_and_where_they_stand(self):
+        size = (30, 30, 20)
+        image = self.write("plate.nii", nifti(size, boxes(size, (5, (2, 2, 2), (28, 28, 10)))))
+
+        def said(*electrodes, status=0):
+            done = self.run_cli("check", image, *(word for e in electrodes for word in ("--electrode", e)), status=status)
+            return done.stderr if status else done.stdout
+
+        def voxels(text, name):
+            return int(re.search(name + r": (\d+) voxels on the skin", text)[1])
+
+        alone = voxels(said("15,15,10:6:2"), "electrode")
+        gel = said("15,15,10:6:2", "15,15,10:6:4")
+        self.assertEqual(voxels(gel, "electrode 1"), alone)
+        self.assertGreater(voxels(gel, "electrode 2"), 0)
+        self.assertIn(f"of its disc electrode 1 has {alone}", gel)
+        none = said("15,15,10:6:2", "15,15,10:6:2", status=2)
+        self.assertIn(f"electrode 2 at (15, 15, 10) gets no voxel, for of its disc electrode 1 has {alone}, all of it", none)
+        self.assertNotIn("from (", said("15,15,11:6:2"))
+        self.assertIn("on the skin at (15, 15, 9), 6 from (15, 15, 15)", said("15,15,15:6:2"))
+        far = said("15,15,23:6:2", status=2)
+        for part in ("(15, 15, 23) is 14 from the skin", "nearest at (15, 15, 9)", "RAS or LPS"):
+            self.assertIn(part, far)
+
+    def test_surfaces_of_labels_go_before_voxels(self):
+        n, values = 20, []
+        for k in range(n):
+            for j in range(n):
+                for i in range(n):
+                    values.append(7 if sum((x - 9.5) ** 2 for x in (i, j, k)) < 36 else 0)
+        image, ball = self.write("ball.nii", nifti((n, n, n), values)), self.dir / "ball.stl"
+        self.run_cli("surface", "(x-9.5)^2 + (y-9.5)^2 + (z-9.5)^2 < 49", "--box", "0,0,0,19,19,19", "--size", "1", "-o", ball)
+        made = self.volumes(image, "--surface-of", f"7={ball}")
+        self.assertAlmostEqual(made["label 7"] / (4 / 3 * 3.1416 * 343), 1, delta=.02)
+        said = self.run_cli("check", image, "--surface-of", f"label 7={ball}").stdout
+        self.assertRegex(said, r'"label 7" follows .*ball.stl: \d+ voxels get')
+        self.assertIn("does not have", self.run_cli("check", image, "--surface-of", f"8={ball}", status=2).stderr)
+        for bad in ("ball.stl", "=ball.stl", "7="):
+            self.run_cli("check", image, "--surface-of", bad, status=2)
+        self.run_cli("check", image, "--surface-of", f"7={self.dir}/none.stl", status=3)
+        self.run_cli("check", ball, "--surface-of", f"7={ball}", status=2)
+        self.run_cli("mesh", image, "--surface-of", f"7={ball}", "--periodic", "xyz", "-o", self.dir / "x.vtu", status=2)
 
     def test_cropping_and_resampling(self):
         image = self.two_boxes()

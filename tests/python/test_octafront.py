@@ -300,6 +300,17 @@ class Images(Case):
             np.testing.assert_array_equal(again.sides, first.sides)
         self.assertEqual(octafront.image_surface(self.labels * (2**24 + 1.0)).region_names, ["label 16777217", "label 33554434"])
 
+    def test_surfaces_of_labels_go_before_voxels(self):
+        middle = np.array([15, 13, 13.5])
+        octafront.image_surface(-self.distance, iso=-6.1, spacing=(1, 1, 1.5)).save(self.folder / "ball.ply")
+        ball = lambda **keywords: octafront.image_surface((self.distance < 6.6).astype(int), spacing=(1, 1, 1.5), **keywords)
+        placed = ball(surface_of={1: self.folder / "ball.ply"})
+        np.testing.assert_allclose(np.linalg.norm(placed.points - middle, axis=1), 6.1, atol=0.15)
+        self.assertIn('"label 1" follows', " ".join(placed.report["notes"]))
+        self.assertEqual(placed.points.tobytes(), ball(surface_of={"label 1": [self.folder / "ball.ply"]}).points.tobytes())
+        with self.assertRaisesRegex(octafront.OptionError, "does not have"):
+            ball(surface_of={"liver": self.folder / "ball.ply"})
+
     def test_an_affine_map_places_the_voxels(self):
         plain = octafront.image_surface(self.labels, spacing=(1, 1, 1.5)).points
         placed = octafront.image_surface(self.labels, self.affine).points
@@ -353,7 +364,7 @@ class Images(Case):
                        check=True, stdout=subprocess.DEVNULL)
         mesh = octafront.mesh_image(file, labels=names, size=14)
         self.assertEqual(mesh.report["hash"], json.loads(report.read_text())["hash"])
-        self.assertEqual(mesh.names["regions"], ["skin", "skull", "csf", "brain", "lesion"])
+        self.assertEqual(mesh.names["regions"], ["brain", "csf", "skull", "skin", "lesion"])
         self.assertEqual(mesh.report["image"]["frame"], "RAS")
         with self.assertRaisesRegex(octafront.InputError, "no such file"):
             octafront.image_surface(self.folder / "none.nii")

@@ -94,6 +94,11 @@ const std::map<std::string, Take>& lists() {
            o.image.regions.labels.merge.push_back(
                {row.at(0).get<std::string>(), row.at(1).get<std::vector<std::int64_t>>()});
        }},
+      {"surface_of",
+       [](IntakeOptions& o, const Json& v) {
+         for (const Json& row : v)
+           o.image.surface_files.push_back({row.at(0).get<std::string>(), row.at(1).get<std::string>()});
+       }},
       {"bands",
        [](IntakeOptions& o, const Json& v) {
          for (const Json& row : v) o.image.regions.bands.push_back(band_of(row));

@@ -1,6 +1,7 @@
 #include <octafront/error.h>
 #include <octafront/image.h>
 #include <octafront/image_surface.h>
+#include <octafront/io.h>
 
 #include "base/core/doubles.h"
 #include "base/core/wording.h"
@@ -68,6 +69,17 @@ ImageRegions regions_of(const ImageIntake& asked, const RunContext& context) {
   all.insert(all.end(), names.begin(), names.end());
   names = std::move(all);
   return regions;
+}
+
+/// Adds the surfaces of labels that are in files.
+void read_surfaces(Domain& domain, const IntakeOptions& options, ImageRegions& regions, const RunContext& context) {
+  for (const FileOfLabel& of : options.image.surface_files) {
+    SurfaceFile read = read_surface(of.file, context);
+    const std::string triangles = counted(read.surface.triangles.size(), "triangle");
+    note(domain, options, "", fmt::format("{}: {}, {}, of \"{}\"", of.file, read.format, triangles, of.label));
+    note_all(domain, options, "reading", read.notes);
+    regions.surfaces.push_back({of.label, std::move(read.surface), of.file});
+  }
 }
 
 /// The first and the last face of the box of voxels along an axis, in index space.
@@ -154,6 +166,7 @@ void check_cleaning(const CleanOptions& clean) {
 void refuse_image_options(const ImageIntake& image, const std::string& name) {
   const LabelOptions& labels = image.regions.labels;
   const CleanOptions& clean = image.regions.clean;
+  const bool has_surfaces = !image.surface_files.empty() || !image.regions.surfaces.empty();
   const std::pair<bool, const char*> given[] = {{image.choice.series > 0, "series"},
                                                 {image.regions.kind != ImageRegions::Kind::kAuto, "image"},
                                                 {!image.regions.bands.empty(), "band"},
@@ -161,6 +174,7 @@ void refuse_image_options(const ImageIntake& image, const std::string& name) {
                                                 {labels.ignore.has_value(), "ignore"},
                                                 {!labels.merge.empty(), "merge"},
                                                 {!image.regions.electrodes.empty(), "electrode"},
+                                                {has_surfaces, "surface_of"},
                                                 {clean.islands > 0, "islands"},
                                                 {clean.holes > 0, "holes"},
                                                 {clean.closing > 0, "close_voxels"},
@@ -177,6 +191,7 @@ void take_image(Domain& domain, const IntakeOptions& options, const Image& image
   check_cleaning(options.image.regions.clean);
   note_all(domain, options, "reading", image.notes);
   ImageRegions regions = regions_of(options.image, context);
+  read_surfaces(domain, options, regions, context);
   const std::optional<Image> whole =
       regions.kind == ImageRegions::Kind::kLabels ? with_whole_labels(image) : std::nullopt;
   if (whole) note_all(domain, options, "reading", whole->notes);

@@ -5,6 +5,8 @@
 
 #include <algorithm>
 #include <cmath>
+#include <map>
+#include <utility>
 
 #include <fmt/core.h>
 
@@ -14,22 +16,38 @@ namespace {
 
 /// Labels of electrodes are those of SimNIBS: behind 100.
 constexpr std::int64_t kFirstElectrode = 101;
+/// In voxels. A point on the skin lies within the half diagonal of one from the middle of a voxel there; one this far
+/// off was read from another surface, and where the disc stands is said.
+constexpr double kFarFromSkin = 3;
+/// In voxels, beyond its own size: a disc this far off is no inaccuracy, but a point in other coordinates.
+constexpr double kInOtherCoordinates = 5;
+/// In voxels: where the skin faces is told by so many around its foot at least, however small the disc.
+constexpr double kAroundFoot = 2;
 
 /// The disc of one electrode among the voxels of an image.
 class Disc {
  public:
+  /// Throws OptionError for a point that is nowhere near the skin.
   Disc(const LabelImage& image, const Electrode& asked)
       : grid_(image.grid),
         regions_(image.regions),
         asked_(asked),
-        least_(std::min({length(grid_.axes[0]), length(grid_.axes[1]), length(grid_.axes[2])})) {}
+        least_(std::min({length(grid_.axes[0]), length(grid_.axes[1]), length(grid_.axes[2])})),
+        largest_(std::max({length(grid_.axes[0]), length(grid_.axes[1]), length(grid_.axes[2])})),
+        foot_(nearest_of_skin()) {
+    if (!(off_skin() > asked_.radius + asked_.height + kInOtherCoordinates * largest_)) return;
+    throw OptionError(fmt::format(
+        "`electrode`: {} is {:.4g} from the skin, which is nearest at {}. Points are in the image's coordinates, RAS "
+        "or LPS as octafront info says; between these x and y change their signs",
+        at_point(asked_.at), off_skin(), at_point(foot_)));
+  }
 
   /// The voxels of the disc: outside, no farther from the skin than it is high, and from its axis than its radius.
   std::vector<std::size_t> voxels() const {
-    const Vec3 foot = nearest_of_body(), axis = outward(foot);
+    const Vec3 axis = outward();
     std::vector<std::size_t> all;
-    for_each_near(foot, asked_.radius + asked_.height, [&](std::size_t voxel, Vec3 p) {
-      const Vec3 from = p - foot;
+    for_each_near(foot_, asked_.radius + asked_.height, [&](std::size_t voxel, Vec3 p) {
+      const Vec3 from = p - foot_;
       const double along = dot(from, axis);
       if (is_body(voxel) || length(from - axis * along) > asked_.radius) return;
       // Not what lies on the other side of a thin part.
@@ -38,8 +56,15 @@ class Disc {
     return all;
   }
 
+  /// Where it stands, as far as that is not where it was asked for.
+  std::string place() const {
+    if (off_skin() <= kFarFromSkin * largest_) return "";
+    return fmt::format(" at {}, {:.4g} from {}", at_point(foot_), off_skin(), at_point(asked_.at));
+  }
+
  private:
   bool is_body(std::size_t voxel) const { return regions_[voxel] != LabelImage::kNoRegion; }
+  double off_skin() const { return distance(foot_, asked_.at); }
 
   Vec3 middle(std::int64_t i, std::int64_t j, std::int64_t k) const {
     return grid_.to_world({static_cast<double>(i), static_cast<double>(j), grid_.slice(static_cast<std::uint32_t>(k))});
@@ -62,7 +87,17 @@ class Disc {
           visit(static_cast<std::size_t>(i + grid_.size[0] * (j + std::int64_t{grid_.size[1]} * k)), middle(i, j, k));
   }
 
-  Vec3 nearest_of_body() const {
+  /// Whether a voxel of the body has a face to one outside in the image.
+  bool is_skin(std::size_t voxel, const std::array<std::uint32_t, 3>& at) const {
+    std::size_t step = 1;
+    for (std::size_t a = 0; a < 3; step *= grid_.size[a++]) {
+      if (at[a] > 0 && !is_body(voxel - step)) return true;
+      if (at[a] + 1 < grid_.size[a] && !is_body(voxel + step)) return true;
+    }
+    return false;
+  }
+
+  Vec3 nearest_of_skin() const {
     Vec3 nearest;
     double least = HUGE_VAL;
     std::size_t voxel = 0;
@@ -71,24 +106,25 @@ class Disc {
         for (std::uint32_t i = 0; i < grid_.size[0]; ++i, ++voxel) {
           if (!is_body(voxel)) continue;
           const Vec3 p = middle(i, j, k);
-          if (const double d = distance(p, asked_.at); d < least) least = d, nearest = p;
+          if (const double d = distance(p, asked_.at); d < least && is_skin(voxel, {i, j, k})) least = d, nearest = p;
         }
+    if (least == HUGE_VAL)
+      throw OptionError("`electrode`: the labels leave no voxel outside of the body; pad the image, or `ignore` some");
     return nearest;
   }
 
-  /// From the body's voxels around to those outside.
-  Vec3 outward(Vec3 foot) const {
+  /// From the body's voxels around the foot to those outside.
+  Vec3 outward() const {
     Vec3 body, outside;
     double in = 0, out = 0;
-    const double around = asked_.radius + asked_.height;
-    for_each_near(foot, around, [&](std::size_t voxel, Vec3 p) {
-      if (distance(p, foot) > around) return;
+    const double around = std::max(asked_.radius + asked_.height, kAroundFoot * largest_);
+    for_each_near(foot_, around, [&](std::size_t voxel, Vec3 p) {
+      if (distance(p, foot_) > around) return;
       if (is_body(voxel))
         body += p, ++in;
       else
         outside += p, ++out;
     });
-    if (out == 0) throw OptionError(fmt::format("`electrode`: {} lies deep inside", at_point(asked_.at)));
     return normalized(outside / out - body / in);
   }
 
@@ -103,28 +139,69 @@ class Disc {
   const ImageGrid& grid_;
   const std::vector<std::uint16_t>& regions_;
   const Electrode& asked_;
-  double least_;  ///< distance of voxels
+  double least_, largest_;  ///< distance of voxels
+  Vec3 foot_;               ///< the middle of a voxel
 };
+
+/// What became of the voxels of one disc.
+struct Given {
+  std::size_t got = 0;
+  std::map<std::uint16_t, std::size_t> taken = {};  ///< by electrodes before it
+
+  /// "electrode 1 has 30 and electrode 2 has 5".
+  std::string others(const LabelImage& image) const {
+    std::string words;
+    for (const auto& [region, voxels] : taken)
+      words += (words.empty() ? "" : " and ") + fmt::format("{} has {}", image.labels[region].name, voxels);
+    return words;
+  }
+};
+
+Given set_on(LabelImage& image, const std::vector<std::size_t>& disc, std::uint16_t number) {
+  Given share;
+  for (const std::size_t voxel : disc) {
+    std::uint16_t& region = image.regions[voxel];
+    if (region == LabelImage::kNoRegion)
+      region = number, ++share.got;
+    else
+      ++share.taken[region];
+  }
+  return share;
+}
+
+[[noreturn]] void fail_without_voxels(const LabelImage& image, const Electrode& electrode, const Given& share) {
+  if (share.taken.empty())
+    throw OptionError(
+        fmt::format("`electrode`: no voxel of the disc at {} lies in the image and outside of the body; "
+                    "pad the image, or make it larger",
+                    at_point(electrode.at)));
+  throw OptionError(
+      fmt::format("`electrode`: {} at {} gets no voxel, for of its disc {}, all of it: move it, or make it higher than "
+                  "what was set there before",
+                  image.labels.back().name, at_point(electrode.at), share.others(image)));
+}
 
 }  // namespace
 
 LabelImage with_electrodes(LabelImage image, const std::vector<Electrode>& electrodes) {
   std::vector<std::vector<std::size_t>> discs;
-  for (const Electrode& electrode : electrodes) discs.push_back(Disc(image, electrode).voxels());
+  std::vector<std::string> places;
+  for (const Electrode& electrode : electrodes) {
+    const Disc disc(image, electrode);
+    discs.push_back(disc.voxels());
+    places.push_back(disc.place());
+  }
   std::int64_t last = kFirstElectrode - 1;
   for (const LabelImage::Label& label : image.labels) last = std::max(last, label.value);
   for (std::size_t e = 0; e < discs.size(); ++e) {
-    if (discs[e].empty())
-      throw OptionError(
-          fmt::format("`electrode`: no voxel of the disc at {} lies in the image and outside of the body; "
-                      "pad the image, or make it larger",
-                      at_point(electrodes[e].at)));
     const auto number = static_cast<std::uint16_t>(image.labels.size());
     image.labels.push_back({++last, electrodes.size() == 1 ? "electrode" : fmt::format("electrode {}", e + 1)});
-    for (const std::size_t voxel : discs[e])
-      if (image.regions[voxel] == LabelImage::kNoRegion) image.regions[voxel] = number;
-    image.notes.push_back(
-        fmt::format("{}: {} on the skin", image.labels.back().name, counted(discs[e].size(), "voxel")));
+    const Given share = set_on(image, discs[e], number);
+    if (share.got == 0) fail_without_voxels(image, electrodes[e], share);
+    std::string words =
+        fmt::format("{}: {} on the skin{}", image.labels.back().name, counted(share.got, "voxel"), places[e]);
+    if (!share.taken.empty()) words += fmt::format("; of its disc {}", share.others(image));
+    image.notes.push_back(std::move(words));
   }
   return image;
 }

@@ -108,8 +108,18 @@ void narrow_at_small(const Net& net, std::span<const std::uint64_t> voxels, Shar
 
 }  // namespace
 
-VertexCells::VertexCells(const Lattice& lattice, const Net& net) : farthest_(HUGE_VAL), net_(net) {
-  number_rooms(lattice, shares_between_layers(lattice, net));
+VertexCells::VertexCells(const Lattice& lattice, const Net& net, const Shares& shares)
+    : farthest_(HUGE_VAL), net_(net) {
+  number_rooms(lattice, shares);
+}
+
+VertexCells::VertexCells(const Lattice& lattice, const Net& net)
+    : VertexCells(lattice, net, shares_between_layers(lattice, net)) {}
+
+VertexCells VertexCells::without_layers(const Lattice& lattice, const Net& net) {
+  Shares::value_type all;
+  for (auto& sides : all) sides.fill(kMostRoom);
+  return {lattice, net, Shares(net.corner.size(), all)};
 }
 
 VertexCells::VertexCells(const Lattice& lattice, const Net& net, std::span<const std::uint64_t> voxels)

@@ -19,6 +19,8 @@ class VertexCells {
   VertexCells(const Lattice& lattice, const Net& net, std::span<const std::uint64_t> voxels);
   /// Of grey values, which say where between middles the surface is.
   VertexCells(const Lattice& lattice, const Net& net);
+  /// Of surfaces that are known: all room that there is, also toward layers, whose sides lie apart as they are.
+  static VertexCells without_layers(const Lattice& lattice, const Net& net);
 
   Vec3 clamped(VertexIndex v, Vec3 p) const;
 
@@ -40,6 +42,7 @@ class VertexCells {
  private:
   /// Per vertex, axis and side, lower ones first: part of the way to the middles of the voxels there.
   using Shares = std::vector<std::array<std::array<float, 2>, 3>>;
+  VertexCells(const Lattice& lattice, const Net& net, const Shares& shares);
   static Shares shares_between_layers(const Lattice& lattice, const Net& net);
   void number_rooms(const Lattice& lattice, const Shares& shares);
 

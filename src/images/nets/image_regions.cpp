@@ -3,6 +3,7 @@
 
 #include "base/core/utf8.h"
 #include "images/nets/clean_bands.h"
+#include "images/nets/given_surfaces.h"
 
 #include <algorithm>
 #include <array>
@@ -27,6 +28,8 @@ void check_options_of(RegionKind kind, const ImageRegions& regions) {
         "`labels`, `ignore` and `merge` are for images of labels, `iso` and `band` for grey ones; give one kind");
   if (kind == RegionKind::kGrey && !regions.electrodes.empty())
     throw OptionError("`electrode` is for images of labels, and this one is taken as grey");
+  if (kind == RegionKind::kGrey && !regions.surfaces.empty())
+    throw OptionError("`surface_of` is for images of labels, and this one is taken as grey");
   if (kind == RegionKind::kLabels && !regions.bands.empty())
     throw OptionError(
         "`iso` and `band` are for grey images, and this one is taken as labels; say that it is a grey image, or leave "
@@ -112,6 +115,13 @@ Complex complex_of_grey(const Image& image, const ImageRegions& regions, const R
   return with_notes(complex_of_bands(used, bands, regions.margin, context), std::move(notes));
 }
 
+std::vector<nets::GivenSurface> given_surfaces_of(const LabelImage& labels, const ImageRegions& regions) {
+  if (regions.surfaces.empty()) return {};
+  if (regions.margin != PeriodicMargin{})
+    throw OptionError("`surface_of` is for images that end, and this one is taken as periodic");
+  return nets::given_surfaces(labels, regions.surfaces);
+}
+
 Complex complex_of_segmentation(const Image& image, const ImageRegions& regions, const RunContext& context) {
   LabelImage labels = labels_of(image, regions.labels);
   std::vector<std::string> notes = std::exchange(labels.notes, {});
@@ -119,6 +129,10 @@ Complex complex_of_segmentation(const Image& image, const ImageRegions& regions,
     labels = cleaned(labels, regions.clean, context);
     add(notes, labels.notes);
   }
+  labels.notes.clear();
+  std::vector<nets::GivenSurface> surfaces = given_surfaces_of(labels, regions);
+  nets::follow_surfaces(labels, surfaces, context);
+  add(notes, labels.notes);
   if (!regions.electrodes.empty()) {
     labels.notes.clear();
     labels = with_electrodes(std::move(labels), regions.electrodes);
@@ -126,7 +140,7 @@ Complex complex_of_segmentation(const Image& image, const ImageRegions& regions,
   }
   if (!goes_on(regions.margin)) add(notes, ends_at_edge(labels, regions.closed_at_box));
   context.report("surfaces", -1);
-  return with_notes(complex_of_labels(labels, {.margin = regions.margin}, context), std::move(notes));
+  return with_notes(nets::complex_on_surfaces(labels, {.margin = regions.margin}, surfaces, context), std::move(notes));
 }
 
 }  // namespace
@@ -134,7 +148,8 @@ Complex complex_of_segmentation(const Image& image, const ImageRegions& regions,
 RegionKind kind_of(const Image& image, const ImageRegions& regions) {
   if (regions.kind != RegionKind::kAuto) return regions.kind;
   if (!regions.bands.empty()) return RegionKind::kGrey;
-  return speaks_of_labels(regions.labels) || looks_like_labels(image) ? RegionKind::kLabels : RegionKind::kGrey;
+  return speaks_of_labels(regions.labels) || !regions.surfaces.empty() || looks_like_labels(image) ? RegionKind::kLabels
+                                                                                                   : RegionKind::kGrey;
 }
 
 Complex complex_of_image(const Image& image, const ImageRegions& regions, const RunContext& context) {

@@ -49,6 +49,11 @@ Vec3 Lattice::to_world(Vec3 p) const {
   return grid_.to_world({p.x / step_.x, p.y / step_.y, p.z / step_.z});
 }
 
+Vec3 Lattice::to_straight(Vec3 world) const {
+  const Vec3 index = grid_.to_index(world);
+  return {index.x * step_.x, index.y * step_.y, index.z * step_.z};
+}
+
 bool Lattice::is_mirrored() const {
   return dot(cross(grid_.axes[0], grid_.axes[1]), grid_.axes[2]) < 0;
 }

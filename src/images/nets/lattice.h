@@ -61,6 +61,7 @@ class Lattice {
   }
 
   Vec3 to_world(Vec3 straight) const;
+  Vec3 to_straight(Vec3 world) const;
   /// Whether the way to the world turns right into left.
   bool is_mirrored() const;
   /// World volume of a unit of straight volume.

@@ -130,8 +130,15 @@ namespace {
 class VolumeKeeper {
  public:
   VolumeKeeper(Net& net, const Groups<>& quads_at, const VertexCells& cells, const Lattice& lattice,
-               const std::vector<double>& wanted, std::vector<Vec3>& x)
-      : net_(net), quads_at_(quads_at), cells_(cells), lattice_(lattice), wanted_(wanted), x_(x), next_(x.size()) {}
+               const std::vector<double>& wanted, std::vector<Vec3>& x, std::span<const std::uint8_t> pinned)
+      : net_(net),
+        quads_at_(quads_at),
+        cells_(cells),
+        lattice_(lattice),
+        wanted_(wanted),
+        pinned_(pinned),
+        x_(x),
+        next_(x.size()) {}
 
   /// False if the volumes are right already.
   bool step() {
@@ -151,6 +158,7 @@ class VolumeKeeper {
  private:
   bool has_pressure(std::size_t label) const { return wanted_[label] > 0; }
   Gradients gradients(std::size_t v) const {
+    if (!pinned_.empty() && pinned_[v]) return {};
     return gradients_at(net_, quads_at_, lattice_, x_, static_cast<VertexIndex>(v));
   }
 
@@ -179,7 +187,8 @@ class VolumeKeeper {
       Vec3 move;
       for (int i = 0; i < g.count; ++i)
         if (has_pressure(g.of[i].label)) move += g.of[i].way * pressure[g.of[i].label];
-      next_[v] = cells_.clamped(static_cast<VertexIndex>(v), x_[v] + move);
+      // What is pinned may have had more room.
+      next_[v] = g.count == 0 ? x_[v] : cells_.clamped(static_cast<VertexIndex>(v), x_[v] + move);
     });
     x_.swap(next_);
   }
@@ -189,6 +198,7 @@ class VolumeKeeper {
   const VertexCells& cells_;
   const Lattice& lattice_;
   const std::vector<double>& wanted_;
+  const std::span<const std::uint8_t> pinned_;
   std::vector<Vec3>& x_;
   std::vector<Vec3> next_;
 };
@@ -196,9 +206,10 @@ class VolumeKeeper {
 }  // namespace
 
 void keep_volumes(Net& net, const Groups<>& quads_at, const VertexCells& cells, const Lattice& lattice,
-                  const std::vector<double>& wanted, std::vector<Vec3>& x, const RunContext& context) {
+                  const std::vector<double>& wanted, std::vector<Vec3>& x, const RunContext& context,
+                  std::span<const std::uint8_t> pinned) {
   constexpr int kSteps = 5;
-  VolumeKeeper keeper(net, quads_at, cells, lattice, wanted, x);
+  VolumeKeeper keeper(net, quads_at, cells, lattice, wanted, x, pinned);
   for (int step = 0; step < kSteps; ++step) {
     context.check();
     if (!keeper.step()) return;
