@@ -201,9 +201,10 @@ class Decimation {
     }
     for (std::size_t i = 0; i < vertex.size(); ++i) {
       if (cells.of[vertex[i]] != cell) continue;
-      whole_.points[vertex[i]] = piece.points[i];
       whole_.quadric[vertex[i]] = piece.quadric[i];
-      if (!piece.is_at_rim[i]) whole_.is_wanted[vertex[i]] = 0;
+      if (piece.is_at_rim[i]) continue;  // others read where it is
+      whole_.points[vertex[i]] = piece.points[i];
+      whole_.is_wanted[vertex[i]] = 0;
     }
   }
 
@@ -225,12 +226,13 @@ class Decimation {
       piece.sheet.push_back(whole_.sheet[t]);
     }
     for (const VertexIndex v : vertex) {
+      const bool is_inside = cells.of[v] == cell;  // else another block may be changing what is not looked at here
       number.of[v] = kNone;
       piece.points.push_back(whole_.points[v]);
-      piece.quadric.push_back(whole_.quadric[v]);
+      piece.quadric.push_back(is_inside ? whole_.quadric[v] : Quadric{});
       piece.role.push_back(whole_.role[v]);
-      piece.is_wanted.push_back(whole_.is_wanted[v]);
-      piece.is_at_rim.push_back(cells.of[v] != cell);
+      piece.is_wanted.push_back(is_inside ? whole_.is_wanted[v] : 0);
+      piece.is_at_rim.push_back(!is_inside);
     }
     const std::vector<std::uint8_t> is_outside = piece.is_at_rim;
     for (const Triangle& t : piece.triangles)
