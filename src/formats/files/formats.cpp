@@ -101,6 +101,11 @@ constexpr FormatHolds kAnsys = [] {
   holds.face_sets = false;
   return holds;
 }();
+constexpr Format read_only(Format format) {
+  format.info.writes_surface = format.info.writes_mesh = false;
+  format.info.holds = {};
+  return format;
+}
 constexpr Format with_surfaces_alone(Format format) {
   format.info.holds.surfaces_alone = true;
   return format;
@@ -157,14 +162,11 @@ constexpr std::array kFormats{
                        "both sides, with names",
                        write_ply, told_ply, read_ply),
                read_ply_lines),
-    [] {
-      Format format =
-          surface("poly", "TetGen PLC", ".poly .smesh", "facets, with markers as patches, regions and holes; read only",
-                  nullptr, told_poly, read_poly);
-      format.info.writes_surface = format.info.writes_mesh = false;
-      format.info.holds = {};
-      return format;
-    }(),
+    read_only(surface("freesurfer", "FreeSurfer", ".pial .white",
+                      "triangles of lh.pial and others, in the scanner's coordinates; read only", nullptr,
+                      told_freesurfer, read_freesurfer)),
+    read_only(surface("poly", "TetGen PLC", ".poly .smesh",
+                      "facets, with markers as patches, regions and holes; read only", nullptr, told_poly, read_poly)),
     read(with_fields(with_wedges(or_text(
              mesh("vtu", "VTU", ".vtu", binary(kAll),
                   "VTK unstructured grid, compressed or text: numbers, names and sets as arrays; beta per element",

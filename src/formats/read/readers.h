@@ -23,6 +23,8 @@ Told told_off(const FileHead& head);
 SurfaceFile read_off(const Input& input);
 Told told_ply(const FileHead& head);
 SurfaceFile read_ply(const Input& input);
+Told told_freesurfer(const FileHead& head);
+SurfaceFile read_freesurfer(const Input& input);
 Told told_poly(const FileHead& head);
 /// TetGen's .poly, or with `simple` its .smesh; nodes may stand in a file .node beside it, whose input `nodes` is then.
 SurfaceFile read_poly(const Input& input, bool simple, const Input* nodes);
