@@ -1,7 +1,7 @@
 #include <octafront/error.h>
 #include <octafront/io.h>
 
-#include "formats/files/formats.h"
+#include "formats/read/readers.h"
 
 #include <bit>
 
@@ -37,7 +37,7 @@ const std::string kFooter =
 
 TEST(FreeSurfer, TrianglesComeInTheScannersCoordinates) {
   const std::string bytes = tetrahedron(kFooter);
-  const SurfaceFile file = read_surface_bytes({"lh.pial", bytes});
+  const SurfaceFile file = read_freesurfer({"lh.pial", bytes});
   EXPECT_EQ(file.format, "FreeSurfer");
   ASSERT_EQ(file.surface.triangles.size(), 4u);
   EXPECT_EQ(file.surface.points[0], (Vec3{10, -20, 30.5}));
@@ -49,7 +49,7 @@ TEST(FreeSurfer, TrianglesComeInTheScannersCoordinates) {
 
 TEST(FreeSurfer, WithoutAVolumeItIsSaid) {
   const std::string bytes = tetrahedron();
-  const SurfaceFile file = read_surface_bytes({"lh.pial", bytes});
+  const SurfaceFile file = read_freesurfer({"lh.pial", bytes});
   EXPECT_EQ(file.surface.points[1], (Vec3{1, 0, 0}));
   EXPECT_THAT(file.notes, ::testing::Contains(HasSubstr("does not say where its volume lies")));
 }
@@ -58,7 +58,7 @@ TEST(FreeSurfer, WhatIsMissingIsTold) {
   const std::string whole = tetrahedron();
   const auto words = [](std::string bytes) -> std::string {
     try {
-      read_surface_bytes({"lh.pial", bytes});
+      read_freesurfer({"lh.pial", bytes});
     } catch (const InputError& error) {
       return error.what();
     }
