@@ -141,7 +141,9 @@ void describe(const Finishing& made) {
     run.comm().agree(report.hash, "mesh at the end");
     describe_true_volumes(filled, domain, report);
     describe_input_volumes(input, filled, report);
-    if (run.options.size.size) describe_needed(filled.boundary.surface, *run.options.size.size, report);
+    const SizeOptions& asked = run.options.size;
+    const bool is_one_size = asked.size && asked.named.empty() && asked.near.empty() && asked.regions.empty();
+    if (is_one_size) describe_needed(filled.boundary.surface, *asked.size, report);
     if (!filled.layers) describe_sizes(filled.mesh, filled.boundary.sizes, report, comm);
     note_volumes(input, filled, run.options, report, stage);
     note_least(report, stage, [&](std::uint64_t tet) { return narrow_place_of(made, tet); });
