@@ -32,8 +32,8 @@ struct SurfaceFile {
   std::vector<PlacedSet> sets = {};      ///< of nodes, edges and faces
 };
 
-/// Reads STL (binary, ASCII), OBJ, OFF, PLY (ASCII, both binary byte orders), TetGen's .poly and .smesh, and meshes of
-/// any format that read_mesh_file() knows, recognised by content; the name only breaks ties. A mesh of tetrahedra
+/// Reads STL (binary, ASCII), OBJ, OFF, PLY (ASCII, both binary byte orders), FreeSurfer's triangles (moved into the
+/// scanner's coordinates), TetGen's .poly and .smesh, and meshes of any format that read_mesh_file() knows, recognised by content; the name only breaks ties. A mesh of tetrahedra
 /// gives its boundary and its interfaces with their sides. Coordinates keep double precision. OBJ
 /// groups and materials, and ASCII STL solids, become patches, so do facet markers, physical groups and references. The
 /// properties "front" and "back" of the faces of a PLY file are SurfaceMesh::sides (-1: outside), its comments "region
