@@ -33,12 +33,13 @@ struct SurfaceFile {
 };
 
 /// Reads STL (binary, ASCII), OBJ, OFF, PLY (ASCII, both binary byte orders), FreeSurfer's triangles (moved into the
-/// scanner's coordinates), TetGen's .poly and .smesh, and meshes of any format that read_mesh_file() knows, recognised by content; the name only breaks ties. A mesh of tetrahedra
-/// gives its boundary and its interfaces with their sides. Coordinates keep double precision. OBJ
-/// groups and materials, and ASCII STL solids, become patches, so do facet markers, physical groups and references. The
-/// properties "front" and "back" of the faces of a PLY file are SurfaceMesh::sides (-1: outside), its comments "region
-/// 0 steel" their names. Throws InputError with file, line or byte offset, and the reason. Memory is bounded by a small
-/// multiple of the size of the file, whatever its header claims.
+/// scanner's coordinates), TetGen's .poly and .smesh, and meshes of any format that read_mesh_file() knows, recognised
+/// by content; the name only breaks ties. A mesh of tetrahedra gives its boundary and its interfaces with their sides.
+/// Coordinates keep double precision. OBJ groups and materials, and ASCII STL solids, become patches, so do facet
+/// markers, physical groups and references. The properties "front" and "back" of the faces of a PLY file are
+/// SurfaceMesh::sides (-1: outside), its comments "region 0 steel" their names. Throws InputError with file, line or
+/// byte offset, and the reason. Memory is bounded by a small multiple of the size of the file, whatever its header
+/// claims.
 SurfaceFile read_surface(const std::string& file, const RunContext& context = {});
 
 /// Lines and points of a file.
