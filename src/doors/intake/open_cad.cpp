@@ -4,7 +4,6 @@
 #include <octafront/repair.h>
 #include <octafront/units.h>
 
-#include "base/core/elementary.h"
 #include "base/core/wording.h"
 #include "base/mesh/curve_names.h"
 #include "cad/reader/cad_reader.h"
@@ -112,7 +111,7 @@ std::optional<double> asked_size(const CadIntake& asked, const CadModel& model) 
   double volume = 0;
   for (const Solid& solid : model.solids) volume += std::max(0.0, solid.volume);
   if (volume == 0) return std::nullopt;
-  return elementary::cbrt(kTetsPerCube * volume / static_cast<double>(*asked.elements));
+  return size_of_elements(volume, *asked.elements);
 }
 
 /// The thickness of the thinnest solid; infinite if there is none.

@@ -1,8 +1,8 @@
 #include "pipeline/stages/coarse_input.h"
 
-#include "base/core/elementary.h"
 #include "base/mesh/complex.h"
 #include "pipeline/stages/methods.h"
+#include "sizing/field/affordable.h"
 #include "soup/coarse/decimate.h"
 
 #include <algorithm>
@@ -26,12 +26,11 @@ bool measures_surface(const SizeOptions& sizes) {
 
 /// That of the elements asked for, if all had one; or the given one.
 double size_of_all(const SizeOptions& sizes, const SurfaceMesh& surface) {
-  constexpr double kRegularTet = 0.11785113;  // its volume over the cube of its edge
   if (sizes.size) return *sizes.size;
   if (!sizes.elements) return 0;
   double volume = 0;
   for (const double v : volumes_of_regions(surface)) volume += v;
-  return elementary::cbrt(volume / kRegularTet / static_cast<double>(*sizes.elements));
+  return size_of_elements(volume, *sizes.elements);
 }
 
 double least_size(const SizeOptions& sizes, const SurfaceMesh& surface) {

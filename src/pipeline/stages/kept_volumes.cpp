@@ -4,6 +4,7 @@
 
 #include "base/core/parallel.h"
 #include "base/core/wording.h"
+#include "base/geometry/measures.h"
 #include "base/geometry/predicates.h"
 #include "base/mesh/complex.h"
 #include "improve/curved/curved.h"
@@ -212,10 +213,9 @@ void describe_needed(const SurfaceMesh& walls, double size, Report& report) {
   for (std::size_t t = 0; t < walls.triangles.size(); ++t) {
     Sides sides = walls.sides_of(t);
     if (sides[0] > sides[1]) std::swap(sides[0], sides[1]);
-    const auto& [a, b, c] = walls.triangles[t];
     WallSummary& wall = between[sides];
     ++wall.triangles;
-    wall.area += 0.5 * length(cross(walls.points[b] - walls.points[a], walls.points[c] - walls.points[a]));
+    wall.area += triangle_area(walls.points, walls.triangles[t]);
   }
   for (auto& [sides, wall] : between) {
     for (int i = 0; i < 2; ++i) wall.regions[i] = sides[i] == kNone ? "outside" : region_name(walls, sides[i]);

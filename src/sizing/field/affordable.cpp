@@ -3,6 +3,8 @@
 #include <octafront/error.h>
 #include <octafront/surface_mesh.h>
 
+#include "base/core/elementary.h"
+#include "base/core/elementary.h"
 #include "base/geometry/measures.h"
 #include "base/mesh/index_range.h"
 
@@ -22,6 +24,10 @@ constexpr int kPlaces = 1024;
 constexpr double kInsideAngle = std::numbers::pi / 2;
 
 }  // namespace
+
+double size_of_elements(double volume, std::int64_t elements) {
+  return elementary::cbrt(kTetsPerCube * volume / static_cast<double>(elements));
+}
 
 void require_affordable(const std::string& what, double tets, const char* advice) {
   if (tets <= static_cast<double>(kMostElements)) return;

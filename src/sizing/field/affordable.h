@@ -3,6 +3,7 @@
 #include <octafront/options.h>
 
 #include <cstddef>
+#include <cstdint>
 #include <functional>
 #include <string>
 #include <vector>
@@ -15,6 +16,8 @@ struct SurfaceMesh;
 /// twenty models: 9.24 with a spread of 3 %. (Space filled by regular tetrahedra would have 6 sqrt(2) = 8.49, the
 /// body-centred cubic lattice of that mean edge length has 9.45.)
 inline constexpr double kTetsPerCube = 9.24;
+/// The one edge length by which a volume has so many elements.
+double size_of_elements(double volume, std::int64_t elements);
 /// Tetrahedra per square of the wanted edge length on the surface, where a wall has one layer of them: 1.47 for each
 /// triangle.
 inline constexpr double kTetsPerSquare = 3.4;

@@ -4,6 +4,7 @@
 #include "base/core/elementary.h"
 #include "base/core/groups.h"
 #include "base/core/parallel.h"
+#include "base/geometry/measures.h"
 #include "base/geometry/self_intersection.h"
 #include "base/shared/blocks.h"
 #include "soup/coarse/decimate_piece.h"
@@ -54,7 +55,7 @@ class Outline {
         area_(surface.triangles.size()) {
     parallel_for(normal_.size(), [&](std::size_t t) {
       const auto& [a, b, c] = surface.triangles[t];
-      const Vec3 n = cross(surface.points[b] - surface.points[a], surface.points[c] - surface.points[a]);
+      const Vec3 n = double_area_normal(surface.points[a], surface.points[b], surface.points[c]);
       area_[t] = length(n) / 2;
       normal_[t] = normalized(n);
     });
@@ -136,12 +137,6 @@ class Outline {
   std::vector<double> area_;
 };
 
-/// Numbers of a piece's vertices, found again without a search.
-struct Numbering {
-  std::vector<std::uint32_t> of;  ///< per vertex of the whole; kNone between pieces
-  explicit Numbering(std::size_t points) : of(points, kNone) {}
-};
-
 class Decimation {
  public:
   Decimation(const SurfaceMesh& complex, const DecimationLimits& limits, const RunContext& context)
@@ -176,19 +171,19 @@ class Decimation {
         if (k != i && k != j) add(k, t);
       }
     });
-    PerThread<Numbering> numbering;
+    PerThread<std::vector<std::uint32_t>> numbering;  // of vertices in the piece; kNone between pieces
     parallel_for(
         cells.count,
         [&](std::size_t cell) {
           change_block(cells, static_cast<std::uint32_t>(cell), triangles_of[cell], crossings,
-                       numbering.local([&] { return Numbering(whole_.points.size()); }));
+                       numbering.local([&] { return std::vector<std::uint32_t>(whole_.points.size(), kNone); }));
         },
         Split::kSingly);
   }
 
   /// Changes only what lies wholly in the cell, and sees all that meets its triangles.
   void change_block(const Cells& cells, std::uint32_t cell, std::span<const std::uint32_t> triangles,
-                    Crossings crossings, Numbering& number) {
+                    Crossings crossings, std::vector<std::uint32_t>& number) {
     std::vector<VertexIndex> vertex;
     Piece piece = piece_of(cells, cell, triangles, vertex, number);
     decimate(piece, limits_, crossings, context_);
@@ -209,25 +204,25 @@ class Decimation {
   }
 
   Piece piece_of(const Cells& cells, std::uint32_t cell, std::span<const std::uint32_t> triangles,
-                 std::vector<VertexIndex>& vertex, Numbering& number) const {
+                 std::vector<VertexIndex>& vertex, std::vector<std::uint32_t>& number) const {
     Piece piece;
     piece.origin = whole_.origin;
     for (const std::uint32_t t : triangles) {
       Triangle own{};
       for (int i = 0; i < 3; ++i) {
         const VertexIndex v = whole_.triangles[t][i];
-        if (number.of[v] == kNone) {
-          number.of[v] = static_cast<std::uint32_t>(vertex.size());
+        if (number[v] == kNone) {
+          number[v] = static_cast<std::uint32_t>(vertex.size());
           vertex.push_back(v);
         }
-        own[i] = number.of[v];
+        own[i] = number[v];
       }
       piece.triangles.push_back(own);
       piece.sheet.push_back(whole_.sheet[t]);
     }
     for (const VertexIndex v : vertex) {
       const bool is_inside = cells.of[v] == cell;  // else another block may be changing what is not looked at here
-      number.of[v] = kNone;
+      number[v] = kNone;
       piece.points.push_back(whole_.points[v]);
       piece.quadric.push_back(is_inside ? whole_.quadric[v] : Quadric{});
       piece.role.push_back(whole_.role[v]);

@@ -1,8 +1,6 @@
 #include "soup/coarse/decimate_piece.h"
 
-#include "base/geometry/triangle_box.h"
-#include "base/geometry/triangle_intersection.h"
-#include "soup/coarse/triangle_grid.h"
+#include "base/geometry/live_triangles.h"
 
 #include <algorithm>
 #include <array>
@@ -63,13 +61,6 @@ struct Star {
   }
 };
 
-/// A triangle as it would become.
-struct Changed {
-  std::uint32_t t;
-  Triangle ids;
-  TriangleCorners at;
-};
-
 class Decimator {
  public:
   Decimator(Piece& piece, const DecimationLimits& limits, Crossings crossings, const RunContext& context)
@@ -80,7 +71,7 @@ class Decimator {
         next_(3 * piece.triangles.size()),
         is_fresh_(piece.points.size()) {
     count_by_sheet();
-    if (crossings == Crossings::kTested) grid_.emplace(piece.points, piece.triangles, limits.edge);
+    if (crossings == Crossings::kTested) live_.emplace(piece);
     for (std::uint32_t c = 0; c < next_.size(); ++c) {
       VertexIndex& first = first_[piece_.triangles[c / 3][c % 3]];
       next_[c] = first;
@@ -195,11 +186,11 @@ class Decimator {
   }
 
   bool may_collapse(VertexIndex v, const Way& way) {
-    changed_.clear();
+    changed_.clear(), made_.clear();
     if (!list_changed(star_, way.to, way.to, way.at)) return false;
     gather(way.to, other_);
     if (way.at != piece_.points[way.to] && !list_changed(other_, v, way.to, way.at)) return false;
-    return keeps_topology(v, way.to) && (!grid_ || crosses_nothing());
+    return keeps_topology(v, way.to) && (!live_ || crosses_nothing());
   }
 
   /// The links of both ends meet in that of the edge alone (T. Dey and others, "Topology preserving edge contraction",
@@ -235,31 +226,16 @@ class Decimator {
       const TriangleCorners made{at, p, q};
       const double shape = shape_of(made, area);
       if (shape < kShape && shape < shape_of({was, p, q}, area_before)) return false;
-      changed_.push_back({c / 3, {id, a, b}, made});
+      changed_.push_back(c / 3);
+      made_.push_back({{id, a, b}, made});
     }
     return true;
   }
 
   bool crosses_nothing() {
-    Box3 box;
-    for (const Changed& t : changed_)
-      for (const Vec3& p : t.at) box.add(p);
-    for (std::size_t i = 0; i < changed_.size(); ++i)
-      for (std::size_t j = 0; j < i; ++j)
-        if (triangles_conflict(changed_[i].at, changed_[i].ids, changed_[j].at, changed_[j].ids)) return false;
-    return grid_->for_each_near(box, piece_, [&](std::uint32_t t, const TriangleCorners& there) {
-      if (is_given_up(t)) return true;
-      const Box3 around = box_of(there);
-      return std::ranges::none_of(changed_, [&](const Changed& made) {
-        return around.overlaps(box_of(made.at)) && triangles_conflict(made.at, made.ids, there, piece_.triangles[t]);
-      });
-    });
-  }
-
-  /// Whether the triangle changes or vanishes.
-  bool is_given_up(std::uint32_t t) const {
-    return std::ranges::any_of(changed_, [&](const Changed& c) { return c.t == t; }) ||
-           std::ranges::any_of(star_.corners, [&](std::uint32_t c) { return c / 3 == t; });
+    std::vector<std::uint32_t> given_up = changed_;
+    for (const std::uint32_t c : star_.corners) given_up.push_back(c / 3);
+    return live_->crossings_among(made_, given_up, 1) == 0;
   }
 
   void collapse(VertexIndex v, const Way& way) {
@@ -278,24 +254,24 @@ class Decimator {
       first_[w] = c;
     }
     first_[v] = kNone;
-    for (const Changed& t : changed_) {
-      if (grid_) grid_->move(t.t, t.at);
+    for (const IdTriangle& t : made_)
       for (const VertexIndex a : t.ids) is_fresh_[a] = 1;
-    }
+    if (live_) live_->note_changed(changed_);
   }
 
   Piece& piece_;
   const DecimationLimits& limits_;
   const RunContext& context_;
-  std::vector<std::uint32_t> first_, next_;  ///< the corners at a vertex, a list each
-  std::vector<std::uint32_t> of_sheet_;      ///< triangles
-  std::vector<std::uint8_t> is_fresh_;       ///< something has changed since it was last tried
-  std::optional<TriangleGrid> grid_;         ///< where crossings are tested
-  double bound_ = 0;                         ///< squared
+  std::vector<std::uint32_t> first_, next_;   ///< the corners at a vertex, a list each
+  std::vector<std::uint32_t> of_sheet_;       ///< triangles
+  std::vector<std::uint8_t> is_fresh_;        ///< something has changed since it was last tried
+  std::optional<LiveTriangles<Piece>> live_;  ///< where crossings are tested
+  double bound_ = 0;                          ///< squared
   Star star_, other_;
   std::vector<Way> ways_;
   std::vector<VertexIndex> apexes_;
-  std::vector<Changed> changed_;
+  std::vector<std::uint32_t> changed_;  ///< triangles
+  std::vector<IdTriangle> made_;        ///< what they become
 };
 
 }  // namespace

@@ -26,7 +26,11 @@ struct Piece {
   std::vector<Triangle> triangles;      ///< one that is removed has kNone for its first corner
   std::vector<std::uint32_t> sheet;     ///< per triangle: between two sheets lies a line; numbered anew by decimate()
 
+  // As LiveTriangles asks.
+  std::size_t triangle_count() const { return triangles.size(); }
   bool is_removed(std::uint32_t t) const { return triangles[t][0] == kNone; }
+  const Triangle& triangle(std::uint32_t t) const { return triangles[t]; }
+  Vec3 corner(std::uint32_t t, int i) const { return points[triangles[t][i]]; }
 };
 
 /// Whether each collapse is tested for what its triangles would cross: slow, and hardly ever needed.

@@ -3,6 +3,7 @@
 #include "base/core/groups.h"
 #include "base/core/parallel.h"
 #include "base/geometry/measures.h"
+#include "base/geometry/symmetric_matrix.h"
 
 #include <algorithm>
 #include <array>
@@ -19,6 +20,9 @@ constexpr std::array<std::array<double, 3>, 3> kSamples{
 constexpr int kSweeps = 8;
 /// How far samples look, in edges.
 constexpr double kReach = 0.5;
+/// Of all weight around a vertex: directions in which faces hardly look count less, so that what is nearly flat does
+/// not shift in its plane.
+constexpr double kDamped = 0.02;
 
 struct Face {
   Vec3 normal;
@@ -45,29 +49,6 @@ Face compared(const SurfaceMesh& surface, std::size_t t, const KnownSurface& inp
   return face;
 }
 
-/// What the normals around a vertex make of a sum of them: moves along directions that faces look in. Directions in
-/// which they hardly look count less (kDamped of all), so that what is nearly flat does not shift in its plane.
-class Directions {
- public:
-  void add(Vec3 n, double weight) {
-    xx_ += weight * n.x * n.x, xy_ += weight * n.x * n.y, xz_ += weight * n.x * n.z;
-    yy_ += weight * n.y * n.y, yz_ += weight * n.y * n.z, zz_ += weight * n.z * n.z;
-  }
-  Vec3 solve(Vec3 r) const {
-    constexpr double kDamped = 0.02;
-    const double damp = kDamped * (xx_ + yy_ + zz_);
-    const double a = xx_ + damp, d = yy_ + damp, f = zz_ + damp;
-    const double m0 = d * f - yz_ * yz_, m1 = xz_ * yz_ - xy_ * f, m2 = xy_ * yz_ - xz_ * d;
-    const double det = a * m0 + xy_ * m1 + xz_ * m2;
-    if (!(det > 0)) return {};
-    const double m3 = a * f - xz_ * xz_, m4 = xy_ * xz_ - a * yz_, m5 = a * d - xy_ * xy_;
-    return Vec3{m0 * r.x + m1 * r.y + m2 * r.z, m1 * r.x + m3 * r.y + m4 * r.z, m2 * r.x + m4 * r.y + m5 * r.z} / det;
-  }
-
- private:
-  double xx_ = 0, xy_ = 0, xz_ = 0, yy_ = 0, yz_ = 0, zz_ = 0;
-};
-
 }  // namespace
 
 std::vector<Vec3> moves_to_fit(const SurfaceMesh& surface, const std::vector<std::uint8_t>& moves,
@@ -80,9 +61,9 @@ std::vector<Vec3> moves_to_fit(const SurfaceMesh& surface, const std::vector<std
       for (std::uint32_t i = 0; i < 3; ++i)
         if (moves[surface.triangles[t][i]]) add(surface.triangles[t][i], 3 * t + i);
   });
-  std::vector<Directions> directions(n);
+  std::vector<SymmetricMatrix> normals(n);
   parallel_for(n, [&](std::size_t v) {
-    for (const std::uint32_t c : corners_at[v]) directions[v].add(faces[c / 3].normal, faces[c / 3].area);
+    for (const std::uint32_t c : corners_at[v]) normals[v].add(faces[c / 3].normal, faces[c / 3].area);
   });
   std::vector<Vec3> way(n), next(n);
   for (int sweep = 0; sweep < kSweeps; ++sweep) {
@@ -97,7 +78,7 @@ std::vector<Vec3> moves_to_fit(const SurfaceMesh& surface, const std::vector<std
           off += face.normal * (face.area * kSamples[s][c % 3] * (face.off[s] - dot(moved, face.normal)));
         }
       }
-      next[v] = way[v] + directions[v].solve(off);
+      next[v] = way[v] + normals[v].damped_solve(off, kDamped * normals[v].trace());
     });
     way.swap(next);
   }
