@@ -4,7 +4,6 @@
 #include <octafront/surface_mesh.h>
 
 #include "base/core/elementary.h"
-#include "base/core/elementary.h"
 #include "base/geometry/measures.h"
 #include "base/mesh/index_range.h"
 
