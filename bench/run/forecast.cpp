@@ -27,7 +27,7 @@ double reading() {
 }
 
 /// Tasks in their order, each to the thread that is free first.
-double seconds_with(std::size_t threads, const std::vector<double>& tasks) {
+double last_end(std::size_t threads, const std::vector<double>& tasks) {
   std::priority_queue<double, std::vector<double>, std::greater<>> free_at;
   double last = 0;
   for (const double seconds : tasks) {
@@ -52,6 +52,11 @@ double thread_cpu_seconds() {
   return static_cast<double>(now.tv_sec) + 1e-9 * static_cast<double>(now.tv_nsec);
 }
 
+double seconds_shared(std::size_t threads, const std::vector<double>& tasks, double alone) {
+  if (alone < kWorthwhile) return alone;
+  return std::max(last_end(threads, tasks), alone / static_cast<double>(threads));
+}
+
 Forecast forecast_region(std::size_t tasks, FunctionRef<void(std::size_t)> task) {
   static const double kReading = reading();
   struct Outside {  // put back whatever a task throws
@@ -74,10 +79,7 @@ Forecast forecast_region(std::size_t tasks, FunctionRef<void(std::size_t)> task)
     for (std::size_t k = 0; k < seconds.size(); ++k) seconds[k][i] = own - of_thread.parallel + of_thread.with[k];
   }
   for (std::size_t k = 0; k < seconds.size(); ++k)
-    region.with[k] = region.parallel < kWorthwhile
-                         ? region.parallel
-                         : std::max(seconds_with(Forecast::kThreads[k], seconds[k]),
-                                    region.parallel / static_cast<double>(Forecast::kThreads[k]));
+    region.with[k] = seconds_shared(Forecast::kThreads[k], seconds[k], region.parallel);
   ++region.regions;
   region.counting = thread_cpu_seconds() - start - region.parallel;
   outside.all.add(region);

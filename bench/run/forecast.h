@@ -9,6 +9,7 @@
 #include <array>
 #include <cstddef>
 #include <cstdint>
+#include <vector>
 
 namespace octafront {
 
@@ -29,6 +30,10 @@ double thread_cpu_seconds();
 
 /// What the calling thread has counted so far: in the task that it does, or in all.
 const Forecast& forecast_so_far();
+
+/// How long a region takes with so many threads: its tasks take these seconds, inner regions shared, and `alone` on one
+/// thread. One too short to wake threads for gains nothing.
+double seconds_shared(std::size_t threads, const std::vector<double>& tasks, double alone);
 
 /// Does task(0) ... task(tasks - 1) in turn, as one region, and says what was counted.
 Forecast forecast_region(std::size_t tasks, FunctionRef<void(std::size_t)> task);
