@@ -54,6 +54,8 @@ class FrontKind {
   virtual std::optional<std::string> first_defect(const SurfaceMesh& made, bool crosses, std::vector<Vec3>& at) = 0;
   /// Smaller sizes at these places, or the input's triangles. `crosses`: what was found there.
   virtual void answer(const std::vector<Vec3>& places, const Outcome&, bool crosses, RoundSizes&) = 0;
+  /// Makes the draft finer at these places, where it crosses itself or does not agree. False if it has no means to.
+  virtual bool refine_at(const std::vector<Vec3>&, Draft&) { return false; }
   /// No other round is made for `far` places that deviate.
   virtual bool leaves_far(std::size_t far, const Outcome&) const = 0;
   /// Smaller sizes where the surface deviated.

@@ -30,9 +30,9 @@ std::vector<std::uint8_t> vertices_to_keep(const WorkingMesh& mesh, const std::v
 
 }  // namespace
 
-Outcome outcome_of(Draft&& draft, const SurfaceMesh& input) {
+Outcome outcome_of(const Draft& draft, const SurfaceMesh& input) {
   const WorkingMesh& mesh = draft.mesh;
-  Outcome c{{{}, {}, {}, draft.sizes}, {}, {}, draft.is_clear, std::move(draft.nearness)};
+  Outcome c{{{}, {}, {}, draft.sizes}, {}, {}, draft.is_clear, draft.nearness};
   SurfaceMesh& s = c.result.surface;
   const std::vector<VertexIndex> sewn = sewn_vertices(mesh);
   const std::vector<std::uint8_t> keep = vertices_to_keep(mesh, sewn);

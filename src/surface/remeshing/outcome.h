@@ -20,7 +20,7 @@ struct Outcome {
 };
 
 /// `input`: the surface or complex that the draft triangulates anew.
-Outcome outcome_of(Draft&& draft, const SurfaceMesh& input);
+Outcome outcome_of(const Draft& draft, const SurfaceMesh& input);
 
 /// The living triangles of these numbers, which are no backs, with all points; sewn.
 SurfaceMesh sewn_triangles(const WorkingMesh& mesh, const std::vector<std::uint32_t>& number);

@@ -32,6 +32,12 @@ constexpr double kWornOut = 10;
 /// more elements than it has.
 constexpr double kMostTriangles = 0.3;
 
+/// A draft is made finer so often where it is wrong at fewer places than this part of its triangles, or this many:
+/// another round costs more.
+constexpr int kMostRefinements = 3;
+constexpr double kFewPart = 1e-3;
+constexpr std::size_t kFew = 20;
+
 /// Strips that make this part of the elements are worth a word.
 constexpr double kMuchForStrips = 0.25;
 
@@ -56,6 +62,24 @@ bool is_input_again(const SurfaceMesh& made, const SurfaceMesh& input) {
   return made.triangles.size() == input.triangles.size() && ordered(made.points) == ordered(input.points);
 }
 
+/// What keeps a surface from being clean and of the input's kind, and where, if that is known.
+struct Wrong {
+  std::optional<std::string> defect;
+  bool crosses = false;
+  std::vector<Vec3> places;
+
+  bool is_nothing() const { return !defect && !crosses; }
+  bool is_little(std::size_t triangles) const {
+    return places.size() <= std::max(kFew, static_cast<std::size_t>(kFewPart * static_cast<double>(triangles)));
+  }
+};
+
+/// A triangulation, and what is wrong with it.
+struct Attempt {
+  Outcome made;
+  Wrong wrong;
+};
+
 /// Rounds with ever smaller sizes where the last one was not good enough.
 class Remesher {
  public:
@@ -68,17 +92,17 @@ class Remesher {
     if (kind_.is_noise()) return kept_as_noise();
     for (counts.rounds = 1; counts.rounds <= kMostRounds && !counts.exceed(kWornOut) && !kind_.is_stuck();
          ++counts.rounds) {
-      Outcome made = attempt(Effort::kFull);
+      auto [made, wrong] = attempt(Effort::kFull);
       if (kind_.is_noise()) return kept_as_noise();
       counts.last_triangles = made.result.surface.triangles.size();
       counts.triangles += counts.last_triangles;
-      if (is_sound(made) && is_true(made)) return finished(made);
+      if (is_sound(made, wrong) && is_true(made)) return finished(made);
       if (static_cast<double>(counts.last_triangles) > kMostTriangles * work_.budget.most()) return kept_for_budget();
       kind_.cap_far(made.nearness, sizes_);
     }
     if (kind_.is_stuck()) return kept_in_crossings();
-    Outcome made = attempt(Effort::kInsertOnly);
-    if (!is_sound(made)) return kept_in_crossings();
+    auto [made, wrong] = attempt(Effort::kInsertOnly);
+    if (!is_sound(made, wrong)) return kept_in_crossings();
     work_.stage.note("the surface's own vertices were kept: coarser triangles would cross");
     made.result.source = sources_of(made);
     return finished(made);
@@ -86,7 +110,7 @@ class Remesher {
 
  private:
   /// One triangulation by the sizes as they are now.
-  Outcome attempt(Effort effort) {
+  Attempt attempt(Effort effort) {
     work_.progress(0);
     Draft draft = with_all_points();
     work_.progress(0.5);
@@ -95,10 +119,23 @@ class Remesher {
     else
       work_.counts.coarsen.input_vertices_left = work_.surface().points.size();
     work_.progress(0.9);
+    Attempt now = judged(draft);
+    if (effort == Effort::kFull)
+      for (int k = 0; k < kMostRefinements && refine(now, draft); ++k) now = judged(draft);
+    return now;
+  }
+
+  Attempt judged(const Draft& draft) {
     validate(draft.mesh);
-    Outcome made = outcome_of(std::move(draft), work_.surface());
+    Outcome made = outcome_of(draft, work_.surface());
     copy_periodic_faces(work_.surface(), work_.periods, made);
-    return made;
+    Wrong wrong = wrong_with(made);
+    return {std::move(made), std::move(wrong)};
+  }
+
+  bool refine(const Attempt& now, Draft& draft) {
+    if (now.wrong.places.empty() || !now.wrong.is_little(now.made.result.surface.triangles.size())) return false;
+    return kind_.refine_at(now.wrong.places, draft);
   }
 
   /// Those of the kind, within the limits.
@@ -151,19 +188,23 @@ class Remesher {
     return {std::move(sizes), std::move(is_fixed), std::move(curves), std::move(mesh), {}, false};
   }
 
-  /// Whether the surface is clean and of the input's kind; otherwise the sizes are made smaller.
-  bool is_sound(const Outcome& made) {
+  /// Sizes stay as they are.
+  Wrong wrong_with(const Outcome& made) {
     const SurfaceMesh& surface = made.result.surface;
     const auto crossings = made.is_clear ? decltype(find_crossings(surface)){} : find_crossings(surface);
     work_.counts.crossings += crossings.size();
-    std::vector<Vec3> places = centers_of(surface, triangles_of(crossings));
-    const bool crosses = !crossings.empty();
-    const std::optional<std::string> defect = kind_.first_defect(surface, crosses, places);
-    if (!defect && !crosses) return true;
-    if (!places.empty()) {
-      kind_.answer(places, made, crosses, sizes_);
+    Wrong wrong{{}, !crossings.empty(), centers_of(surface, triangles_of(crossings))};
+    wrong.defect = kind_.first_defect(surface, wrong.crosses, wrong.places);
+    return wrong;
+  }
+
+  /// Whether the surface is clean and of the input's kind; otherwise the sizes are made smaller.
+  bool is_sound(const Outcome& made, const Wrong& wrong) {
+    if (wrong.is_nothing()) return true;
+    if (!wrong.places.empty()) {
+      kind_.answer(wrong.places, made, wrong.crosses, sizes_);
     } else {
-      work_.stage.note("an attempt was dropped: " + *defect);
+      work_.stage.note("an attempt was dropped: " + *wrong.defect);
       sizes_.scale(kCap);
     }
     return false;

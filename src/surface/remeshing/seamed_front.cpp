@@ -7,6 +7,7 @@
 #include "surface/lines/corner_sizes.h"
 #include "surface/lines/flat_sizes.h"
 #include "surface/lines/least_sizes.h"
+#include "surface/lines/thinned.h"
 #include "surface/remeshing/draw_to_input.h"
 #include "surface/remeshing/far_places.h"
 #include "surface/remeshing/front_kind.h"
@@ -126,7 +127,7 @@ class SeamedFront : public FrontKind {
     mend_crossings(draft);
     mend_between_lines(draft.mesh, work_.tolerance);
     approach_far(draft, watch);
-    draft.is_clear = mend_between_lines(draft.mesh, kLittle * work_.tolerance) || mend_last_crossings(draft);
+    clear(draft);
   }
 
   bool is_noise() const override { return is_noise_; }
@@ -145,6 +146,17 @@ class SeamedFront : public FrontKind {
       if (is_in_vain(p, sizes)) return KeptPlace{p, kKeptRadius * sizes.first().at(p)};
       return {};
     });
+  }
+
+  /// Seams stay as they are.
+  bool refine_at(const std::vector<Vec3>& places, Draft& draft) override {
+    std::vector<PointSize> wanted;
+    for (const Vec3 p : thinned(draft.sizes, places)) wanted.push_back({p, kCap * draft.sizes.at(p)});
+    draft.sizes = capped_at(draft.sizes, wanted, work_.stage.context(), {.gradation = kSteep});
+    divide_long(draft);
+    divide_repeated(draft);
+    clear(draft);
+    return true;
   }
 
   bool leaves_far(std::size_t far, const Outcome& made) const override {
@@ -229,6 +241,11 @@ class SeamedFront : public FrontKind {
     work_.counts.divided_edges = divide_repeated_edges(mesh, work_.known, work_.periods, draft.sizes);
     improve_surface(mesh, input(), draft.curves, draft.sizes, context, work_.counts.improve);
     divide_repeated(draft);
+  }
+
+  /// Mends what crosses at last.
+  void clear(Draft& draft) {
+    draft.is_clear = mend_between_lines(draft.mesh, kLittle * work_.tolerance) || mend_last_crossings(draft);
   }
 
   void divide_repeated(Draft& draft) {

@@ -221,6 +221,30 @@ TEST(Fallback, IsLocal) {
   EXPECT_GT(coarse, 0.9 * static_cast<double>(all));
 }
 
+/// A ball, and a small one in it whose wall is `gap` below its own.
+SurfaceMesh ball_with_a_pearl(double gap) {
+  constexpr double kRadius = 0.1;
+  SurfaceMesh s = icosphere(5);
+  s.sides.assign(s.triangles.size(), {kNone, 0});
+  SurfaceMesh pearl = icosphere(3);
+  const auto first = static_cast<VertexIndex>(s.points.size());
+  for (const Vec3 p : pearl.points) s.points.push_back(p * kRadius + Vec3{0, 0, 1 - gap - kRadius});
+  for (const auto& [a, b, c] : pearl.triangles) s.triangles.push_back({a + first, b + first, c + first});
+  s.sides.resize(s.triangles.size(), {0, 1});
+  s.patch.assign(s.triangles.size(), 0);
+  std::fill(s.patch.begin() + 20 * 1024, s.patch.end(), 1);
+  return s;
+}
+
+TEST(Refine, MendsAComplexThatIsWrongAtOnePlaceWithoutAnotherRound) {
+  const SurfaceMesh input = ball_with_a_pearl(0.005);
+  StageReport report;
+  const Remeshed made = remesh_within(input, 0.7, report, 0.3);
+  EXPECT_LE(counter(report, "rounds"), 2);  // three where each chord that passes the pearl by costs one
+  EXPECT_TRUE(surface::find_crossings(made.surface).empty());
+  EXPECT_EQ(first_complex_defect_but_crossings(made.surface, no_context()), std::nullopt);
+}
+
 std::vector<surface::FarPlace> places_beyond(double limit, const SurfaceMesh& made, const SurfaceMesh& input) {
   std::vector<std::uint32_t> number(made.triangles.size());
   std::iota(number.begin(), number.end(), 0u);
