@@ -15,6 +15,7 @@ import subprocess
 import tempfile
 
 from bench.models.dicom_series import write_series
+from bench.models.volumes_as_nrrd import inrimage
 from bench.ours import mesh, stage
 from bench.pages import tables
 from bench.pages.origin import ORIGIN, written_by
@@ -162,8 +163,9 @@ def beside(build, volumes, names, timeout, results):
             else:
                 as_inr(volumes / file, image)
             outcome = mesh_with_cgal(build, image, folder, timeout, PEERS[name])
+            inrimage(image)
             # To CGAL 0 is outside, always.
-            found = judge(build, image, outcome.mesh, []) if outcome.mesh else None
+            found = judge(build, image.with_suffix(".nrrd"), outcome.mesh, []) if outcome.mesh else None
         results.add("CGAL", row_of(name, outcome, found))
 
 
