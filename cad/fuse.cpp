@@ -108,6 +108,8 @@ class Shares {
     }
     for (const auto& [before, after] : cells_.faces) pass_labels(before, after, part_.face_labels);
     tell();
+    enter(tiny_);
+    enter(real_);
   }
 
  private:
@@ -182,6 +184,15 @@ class Shares {
   void leave() {
     part_.notes.push_back(in_words(part_, real_));
     part_.fused = false;
+    enter(real_);
+  }
+
+  void enter(const std::vector<Pair>& pairs) {
+    for (const Pair& p : pairs)
+      part_.shared.push_back(
+          {{static_cast<std::uint32_t>(std::min(p.a, p.b)), static_cast<std::uint32_t>(std::max(p.a, p.b))},
+           p.volume,
+           p.depth});
   }
 
   void vanish(std::size_t i) {
@@ -233,6 +244,13 @@ void take_all(Part& part, std::vector<Body> added) {
   const auto is_gone = [](const Body& body) { return body.solid.IsNull(); };
   if (std::any_of(part.solids.begin(), part.solids.end(), is_gone))
     for (std::size_t i = 0; i < part.solids.size(); ++i) part.solids[i].labels.name = name_of(part, i);
+  std::vector<std::uint32_t> now(part.solids.size(), kNone);
+  std::uint32_t kept = 0;
+  for (std::size_t i = 0; i < now.size(); ++i)
+    if (!is_gone(part.solids[i])) now[i] = kept++;
+  for (SharedSpace& space : part.shared)
+    for (std::uint32_t& solid : space.solids) solid = now[solid];
+  std::erase_if(part.shared, [](const SharedSpace& space) { return std::ranges::count(space.solids, kNone) > 0; });
   std::erase_if(part.solids, is_gone);
   for (Body& body : added) part.solids.push_back(std::move(body));
   number_names(part);

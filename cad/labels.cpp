@@ -7,11 +7,14 @@
 #include <TDF_Label.hxx>
 #include <TDF_LabelSequence.hxx>
 #include <TDataStd_Name.hxx>
+#include <TDataStd_TreeNode.hxx>
 #include <TopExp_Explorer.hxx>
 #include <TopLoc_Location.hxx>
+#include <XCAFDoc.hxx>
 #include <XCAFDoc_ColorTool.hxx>
 #include <XCAFDoc_DocumentTool.hxx>
 #include <XCAFDoc_LayerTool.hxx>
+#include <XCAFDoc_Material.hxx>
 #include <XCAFDoc_ShapeTool.hxx>
 #include <algorithm>
 #include <cctype>
@@ -115,6 +118,7 @@ class DocumentReader {
     const LabelsOfShapes inside = labels_of_parts(label);
     const TopoDS_Shape shape = XCAFDoc_ShapeTool::GetShape(label);
     if (shape.IsNull()) return;
+    const std::string name = told_name(label);
     int solids = 0;
     for (TopExp_Explorer it(shape, TopAbs_SOLID); it.More(); it.Next()) ++solids;
     for (TopExp_Explorer it(shape, TopAbs_SOLID); it.More(); it.Next()) {
@@ -123,7 +127,8 @@ class DocumentReader {
       if (says_nothing(own.name) || (solids == 1 && !says_nothing(product.name))) own.name.clear();
       Labels labels = merged(own, product);
       if (says_nothing(labels.name)) labels.name.clear();
-      part_.solids.push_back({it.Current().Moved(place, false), labels});
+      part_.solids.push_back(
+          {it.Current().Moved(place, false), labels, name.empty() ? product.name : name, material_of(label)});
     }
     for (TopExp_Explorer it(shape, TopAbs_FACE, TopAbs_SOLID); it.More(); it.Next())
       part_.loose.push_back(it.Current().Moved(place, false));
@@ -159,6 +164,17 @@ class DocumentReader {
       if (!shape.IsNull()) all[shape.TShape().get()] = labels_of(part);
     }
     return all;
+  }
+
+  static std::string material_of(const TDF_Label& label) {
+    Handle(TDataStd_TreeNode) node;
+    Handle(XCAFDoc_Material) material;
+    if (!label.FindAttribute(XCAFDoc::MaterialRefGUID(), node) || !node->HasFather() ||
+        !node->Father()->Label().FindAttribute(XCAFDoc_Material::GetID(), material))
+      return {};
+    const Handle(TCollection_HAsciiString) name = material->GetName();
+    const std::string text = name.IsNull() ? "" : to_utf8(name->ToCString());
+    return says_nothing(text) ? "" : text;
   }
 
   /// Empty where it says nothing.

@@ -1,10 +1,10 @@
 #include "answer.h"
 #include "measure.h"
+#include "outline.h"
 #include "pipe.h"
 #include "read.h"
 #include "steps.h"
 #include "topology.h"
-#include "weld.h"
 
 #include <Standard_Failure.hxx>
 #include <cmath>

@@ -1,5 +1,6 @@
 #include "base/geometry/self_intersection.h"
 #include "measure.h"
+#include "outline.h"
 #include "pipe.h"
 #include "steps.h"
 #include "topology.h"

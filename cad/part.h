@@ -25,12 +25,14 @@ using FaceLabels = NCollection_DataMap<TopoDS_Shape, Labels, TopTools_ShapeMapHa
 struct Body {
   TopoDS_Shape solid;
   Labels labels;
+  std::string product = {}, material = {};  ///< as of Solid
 };
 
 struct Part {
   std::vector<Body> solids;
   std::vector<TopoDS_Shape> loose;  ///< faces of no solid
   FaceLabels face_labels;
+  std::vector<SharedSpace> shared;  ///< by the solids' places here
   bool fused = true;
   std::string format, unit;
   double to_millimetres = 1;

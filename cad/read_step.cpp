@@ -269,7 +269,7 @@ void read_step(const std::string& path, const std::string& name, bool keep_going
   Interface_Static::SetCVal("xstep.cascade.unit", "MM");
   Interface_Static::SetCVal("read.step.codepage", is_utf8_file(path) ? "UTF8" : "iso8859-1");
   STEPCAFControl_Reader reader;
-  reader.SetLayerMode(false), reader.SetPropsMode(false), reader.SetGDTMode(false), reader.SetMatMode(false);
+  reader.SetLayerMode(false), reader.SetPropsMode(false), reader.SetGDTMode(false);
   reader.SetViewMode(false);
   send_progress("reading", "the text of the file");
   const IFSelect_ReturnStatus status = reader.ReadFile(path.c_str());

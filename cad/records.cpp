@@ -69,6 +69,24 @@ SurfaceRecord analytic(const Handle(Geom_Surface) & surface) {
   return out;
 }
 
+/// The surface of a face, whatever it is cut out of.
+Handle(Geom_Surface) basis_of(const TopoDS_Face& face) {
+  Handle(Geom_Surface) surface = BRep_Tool::Surface(face);
+  for (;;) {
+    const auto trimmed = Handle(Geom_RectangularTrimmedSurface)::DownCast(surface);
+    if (trimmed.IsNull()) return surface;
+    surface = trimmed->BasisSurface();
+  }
+}
+
+/// The same of an offset that is analytic again.
+SurfaceRecord analytic_or_offset(const Handle(Geom_Surface) & surface) {
+  const SurfaceRecord record = analytic(surface);
+  const auto offset = Handle(Geom_OffsetSurface)::DownCast(surface);
+  if (record.kind != SurfaceKind::kNone || offset.IsNull() || offset->Surface().IsNull()) return record;
+  return analytic(offset->Surface());
+}
+
 /// Not periodic on entry.
 SurfaceRecord record_of(const Geom_BSplineSurface& s) {
   SurfaceRecord out;
@@ -287,23 +305,20 @@ CurveRecord nurbs_record(const Handle(Geom_Curve) & curve, double first, double 
 
 SurfaceRecord surface_record(const TopoDS_Face& face, std::vector<SurfaceSample>& samples, const Allowed& allowed) {
   try {
-    Handle(Geom_Surface) surface = BRep_Tool::Surface(face);
-    while (!surface.IsNull()) {
-      if (const auto trimmed = Handle(Geom_RectangularTrimmedSurface)::DownCast(surface); !trimmed.IsNull())
-        surface = trimmed->BasisSurface();
-      else
-        break;
-    }
+    const Handle(Geom_Surface) surface = basis_of(face);
     if (surface.IsNull() || samples.empty()) return {};
-    SurfaceRecord record = analytic(surface);
-    if (record.kind == SurfaceKind::kNone) {
-      // Some offsets are analytic again.
-      if (const auto offset = Handle(Geom_OffsetSurface)::DownCast(surface);
-          !offset.IsNull() && !offset->Surface().IsNull())
-        record = analytic(offset->Surface());
-    }
+    const SurfaceRecord record = analytic_or_offset(surface);
     if (record.kind != SurfaceKind::kNone && fits(record, samples, allowed)) return record;
     return nurbs_record(face, surface, samples, allowed);
+  } catch (const Standard_Failure&) {
+    return {};
+  }
+}
+
+SurfaceRecord analytic_record(const TopoDS_Face& face) {
+  try {
+    const Handle(Geom_Surface) surface = basis_of(face);
+    return surface.IsNull() ? SurfaceRecord() : analytic_or_offset(surface);
   } catch (const Standard_Failure&) {
     return {};
   }

@@ -29,6 +29,8 @@ struct Allowed {
 /// The geometry of a face as a record that passes through the samples so near; kNone where none does. Sets their
 /// parameters anew where the record has others than the face.
 SurfaceRecord surface_record(const TopoDS_Face& face, std::vector<SurfaceSample>& samples, const Allowed& allowed);
+/// The same before there are points to hold it against: where a few numbers give it, else kNone.
+SurfaceRecord analytic_record(const TopoDS_Face& face);
 /// The same for an edge.
 CurveRecord curve_record(const TopoDS_Edge& edge, std::vector<CurveSample>& samples, const Allowed& allowed);
 

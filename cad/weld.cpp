@@ -2,12 +2,12 @@
 
 #include "measure.h"
 #include "records.h"
+#include "smooth.h"
 
 #include <BRepAdaptor_Curve.hxx>
 #include <BRepTools.hxx>
 #include <BRep_Tool.hxx>
 #include <GCPnts_TangentialDeflection.hxx>
-#include <Geom2d_Curve.hxx>
 #include <Poly_PolygonOnTriangulation.hxx>
 #include <Poly_Triangulation.hxx>
 #include <Standard_Failure.hxx>
@@ -26,23 +26,9 @@ namespace {
 
 /// Records are held to the tolerance of the shape, or to this part of the diagonal; on borders to the second one.
 constexpr double kRecordError = 1e-7, kBorderGap = 1e-4;
-/// A normal so short, against the others along an edge, is a pole's: its direction is noise.
-constexpr double kPole = 1e-6;
-/// Faces whose normals differ by less along an edge have one tangent plane there: 1 degree.
-const double kSmoothCosine = std::cos(M_PI / 180);
 
 Vec3 vec_of(const gp_Pnt& p) {
   return {p.X(), p.Y(), p.Z()};
-}
-
-/// Largest tolerance that a point of the face may have.
-double tolerance_around(const TopoDS_Face& face) {
-  double most = BRep_Tool::Tolerance(face);
-  for (TopExp_Explorer it(face, TopAbs_EDGE); it.More(); it.Next())
-    most = std::max(most, BRep_Tool::Tolerance(TopoDS::Edge(it.Current())));
-  for (TopExp_Explorer it(face, TopAbs_VERTEX); it.More(); it.Next())
-    most = std::max(most, BRep_Tool::Tolerance(TopoDS::Vertex(it.Current())));
-  return most;
 }
 
 class Welder {
@@ -57,6 +43,7 @@ class Welder {
     for (const Topology::OfFace& face : topology_.faces) box.add(quick_box(face.face));
     diagonal_ = box.diagonal();
     int without_record = 0, without_triangles = 0, coarser = 0;
+    model_.edges.clear();
     for (std::size_t f = 0; f < topology_.faces.size(); ++f) {
       on_face(f);
       Face& face = model_.faces[f];
@@ -185,7 +172,7 @@ class Welder {
       samples.push_back({{mesh->UVNode(n).X(), mesh->UVNode(n).Y()}, model_.points[p], on_border});
     }
     Face& face = model_.faces[f];
-    face.surface = surface_record(forward, samples, allowed(tolerance_around(forward)));
+    face.surface = surface_record(forward, samples, allowed(tolerance_of(forward)));
     if (face.surface.kind != SurfaceRecord::Kind::kNone) take_gap(gap(face.surface, samples), face.tolerance);
     add_triangles_of(f, *mesh, point, samples, shape.Orientation() == TopAbs_REVERSED);
     set_range(forward, samples, face);
@@ -254,7 +241,7 @@ class Welder {
     edge.tolerance = BRep_Tool::Tolerance(shape.edge);
     edge.length = length_of(shape.edge);
     edge.vertices = points.points;
-    const bool one_plane = is_smooth_across(shape, points.parameters);
+    const bool one_plane = is_smooth_across(topology_, shape, points.parameters);
     const bool seam = shape.faces.size() == 1 && BRep_Tool::IsClosed(shape.edge, topology_.faces[shape.faces[0]].face);
     edge.is_seam = seam && one_plane;
     edge.is_smooth = shape.faces.size() == 2 && one_plane;
@@ -265,60 +252,6 @@ class Welder {
     if (edge.curve.kind != CurveRecord::Kind::kNone) take_gap(gap(edge.curve, samples), edge.tolerance);
     for (const CurveSample& s : samples) edge.parameters.push_back(s.at);
     model_.edges.push_back(std::move(edge));
-  }
-
-  bool is_reversed(const Topology::Use& use) const {
-    return topology_.faces[use.face].face.Orientation() == TopAbs_REVERSED;
-  }
-
-  /// Normals of the face's front along an edge, as long as the surface's derivatives make them: at a pole nearly
-  /// nothing.
-  std::vector<gp_Vec> normals_along(const Topology::Use& use, const std::vector<double>& parameters) const {
-    double first, last;
-    const TopoDS_Face face = TopoDS::Face(topology_.faces[use.face].face.Oriented(TopAbs_FORWARD));
-    const Handle(Geom2d_Curve) curve = BRep_Tool::CurveOnSurface(use.edge, face, first, last);
-    const Handle(Geom_Surface) surface = BRep_Tool::Surface(face);
-    std::vector<gp_Vec> normals;
-    if (curve.IsNull() || surface.IsNull()) return normals;
-    for (const double parameter : parameters) {
-      const gp_Pnt2d uv = curve->Value(std::clamp(parameter, first, last));
-      gp_Pnt p;
-      gp_Vec du, dv;
-      surface->D1(uv.X(), uv.Y(), p, du, dv);
-      normals.push_back(is_reversed(use) ? dv.Crossed(du) : du.Crossed(dv));
-    }
-    return normals;
-  }
-
-  static double longest(const std::vector<gp_Vec>& vectors) {
-    double most = 0;
-    for (const gp_Vec& v : vectors) most = std::max(most, v.Magnitude());
-    return most;
-  }
-
-  bool is_smooth_across(const Topology::OfEdge& shape, const std::vector<double>& parameters) const {
-    const std::vector<Topology::Use>& uses = shape.uses;
-    if (uses.size() != 2) return false;
-    const auto direction = [&](const Topology::Use& use) {
-      return (use.edge.Orientation() == TopAbs_REVERSED) != is_reversed(use);
-    };
-    // Faces that have the edge in the same direction look to different sides.
-    const double sign = direction(uses[0]) == direction(uses[1]) ? -1 : 1;
-    try {
-      const std::vector<gp_Vec> a = normals_along(uses[0], parameters), b = normals_along(uses[1], parameters);
-      if (a.empty() || b.empty()) return false;
-      const double least_a = kPole * longest(a), least_b = kPole * longest(b);
-      bool any = false;
-      for (std::size_t i = 0; i < a.size(); ++i) {
-        const double la = a[i].Magnitude(), lb = b[i].Magnitude();
-        if (!(la > least_a && lb > least_b)) continue;
-        if (sign * a[i].Dot(b[i]) < kSmoothCosine * la * lb) return false;
-        any = true;
-      }
-      return any;
-    } catch (const Standard_Failure&) {
-      return false;
-    }
   }
 
   const Topology& topology_;
@@ -352,25 +285,6 @@ void find_closed(CadModel& model) {
 }
 
 }  // namespace
-
-CadModel model_without_triangles(const Part& part, const Topology& topology) {
-  CadModel model;
-  for (const Body& body : part.solids)
-    model.solids.push_back({body.labels, volume_of(body.solid), area_of(body.solid), false});
-  for (const Topology::OfFace& of : topology.faces) {
-    Face face;
-    if (part.face_labels.IsBound(of.face)) face.labels = part.face_labels.Find(of.face);
-    face.sides = of.sides;
-    face.area = std::abs(area_of(of.face));
-    face.tolerance = BRep_Tool::Tolerance(of.face);
-    model.tolerance = std::max(model.tolerance, tolerance_around(of.face));
-    model.faces.push_back(std::move(face));
-  }
-  model.fused = part.fused, model.format = part.format, model.unit = part.unit,
-  model.to_millimetres = part.to_millimetres, model.per_millimetre = part.per_millimetre;
-  model.notes = part.notes;
-  return model;
-}
 
 void add_triangles(const Part&, const Topology& topology, const Fineness& fineness, const std::vector<int>& rung,
                    const std::function<void(std::size_t)>& on_face, CadModel& model) {

@@ -8,9 +8,6 @@
 
 namespace octafront::cad {
 
-/// What is known without triangles: solids, labels, areas, volumes, notes.
-CadModel model_without_triangles(const Part& part, const Topology& topology);
-
 /// Fills in the triangles that the faces have, welded by topology, edges as polylines, and geometry as records.
 /// `rung`: per face, of triangulate(). `on_face`: called before each face's record.
 void add_triangles(const Part& part, const Topology& topology, const Fineness& fineness, const std::vector<int>& rung,

@@ -84,11 +84,14 @@ struct Labels {
 struct Face {
   Labels labels;
   SurfaceRecord surface;
+  bool is_turned = false;  ///< its front is where the derivatives by u and v do not point, as the file has them
   /// The box of its parameters, u and v; what is trimmed away inside of it is not known.
   Uv low, high;
   Sides sides = {kNone, kNone};  ///< the solids in front of its triangles and behind; kNone: none
-  double area = 0;               ///< of the true face
-  double tolerance = 0;          ///< of the B-rep, input units
+  /// The first of the faces between the same solids that go on as one kind of surface, smoothly; kNone: itself.
+  std::uint32_t piece = kNone;
+  double area = 0;       ///< of the true face
+  double tolerance = 0;  ///< of the B-rep, input units
   /// How its triangles came: as asked, coarser than asked, or not at all (filled from its boundary elsewhere).
   enum class Triangles : std::uint8_t { kAsAsked, kCoarser, kNone };
   Triangles triangles = Triangles::kAsAsked;
@@ -109,8 +112,15 @@ struct CadEdge {
 
 struct Solid {
   Labels labels;
-  double volume = 0, area = 0;  ///< of the true solid
-  bool closed = false;          ///< its triangles are: by topology
+  std::string product, material;  ///< what it is an occurrence of, and made of, by name; empty: the file does not say
+  double volume = 0, area = 0;    ///< of the true solid
+  bool closed = false;            ///< its triangles are: by topology
+};
+
+/// Two solids that had space in common when they were read.
+struct SharedSpace {
+  std::array<std::uint32_t, 2> solids{};  ///< ascending
+  double volume = 0, depth = 0;           ///< how thick that space is
 };
 
 struct CadModel {
@@ -123,6 +133,7 @@ struct CadModel {
   std::vector<Solid> solids;
   std::vector<VertexIndex> vertices;  ///< points that are vertices of the B-rep
   double tolerance = 0;               ///< the largest of the B-rep
+  std::vector<SharedSpace> shared;
   /// Solids that touch share faces. False: that was not done, or not for all; faces of different solids may lie on one
   /// another, or cross.
   bool fused = true;

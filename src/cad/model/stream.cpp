@@ -114,7 +114,8 @@ void fields(Ar& ar, T& it) {
 template <class Ar, class T>
 requires std::is_same_v<std::remove_const_t<T>, Face>
 void fields(Ar& ar, T& it) {
-  ar(it.labels), ar(it.surface), ar(it.low), ar(it.high), ar(it.sides), ar(it.area), ar(it.tolerance), ar(it.triangles);
+  ar(it.labels), ar(it.surface), ar(it.is_turned), ar(it.low), ar(it.high), ar(it.sides), ar(it.piece), ar(it.area);
+  ar(it.tolerance), ar(it.triangles);
 }
 template <class Ar, class T>
 requires std::is_same_v<std::remove_const_t<T>, CadEdge>
@@ -125,13 +126,13 @@ void fields(Ar& ar, T& it) {
 template <class Ar, class T>
 requires std::is_same_v<std::remove_const_t<T>, Solid>
 void fields(Ar& ar, T& it) {
-  ar(it.labels), ar(it.volume), ar(it.area), ar(it.closed);
+  ar(it.labels), ar(it.product), ar(it.material), ar(it.volume), ar(it.area), ar(it.closed);
 }
 template <class Ar, class T>
 requires std::is_same_v<std::remove_const_t<T>, CadModel>
 void fields(Ar& ar, T& it) {
   ar(it.points), ar(it.triangles), ar(it.face_of), ar(it.corners), ar(it.faces), ar(it.edges), ar(it.solids);
-  ar(it.vertices), ar(it.tolerance), ar(it.fused), ar(it.format), ar(it.unit);
+  ar(it.vertices), ar(it.tolerance), ar(it.shared), ar(it.fused), ar(it.format), ar(it.unit);
   ar(it.to_millimetres), ar(it.per_millimetre), ar(it.notes);
 }
 template <class Ar, class T>
@@ -179,6 +180,7 @@ void check(const CadModel& model) {
   for (const VertexIndex v : model.vertices) require(v < model.points.size());
   for (const Face& face : model.faces) {
     for (const std::uint32_t s : face.sides) require(s == kNone || s < model.solids.size());
+    require(face.piece == kNone || face.piece < model.faces.size());
     const SurfaceRecord& s = face.surface;
     const bool nurbs = s.kind == SurfaceRecord::Kind::kNurbs;
     check_knots(s.u_knots, nurbs), check_knots(s.v_knots, nurbs);

@@ -18,7 +18,8 @@ namespace octafront::cad {
 enum class FrameKind : std::uint8_t {
   kProgress = 'P',  ///< where(): stage, then what it works on
   kNote = 'N',      ///< a sentence for the user
-  kOpened = 'O',    ///< the model without triangles, edges and geometry: solids, faces' labels, sizes
+  kOpened =
+      'O',  ///< the model without triangles: solids, faces, which meet in edges; of geometry what few numbers give
   kModel = 'M',
   kError = 'E',  ///< a sentence for the user; the end of an answer
 };

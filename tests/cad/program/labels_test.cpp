@@ -5,12 +5,14 @@
 #include <BRepPrimAPI_MakeBox.hxx>
 #include <BRep_Builder.hxx>
 #include <TCollection_ExtendedString.hxx>
+#include <TCollection_HAsciiString.hxx>
 #include <TDF_Label.hxx>
 #include <TDataStd_Name.hxx>
 #include <TopLoc_Location.hxx>
 #include <TopoDS_Compound.hxx>
 #include <XCAFApp_Application.hxx>
 #include <XCAFDoc_DocumentTool.hxx>
+#include <XCAFDoc_MaterialTool.hxx>
 #include <XCAFDoc_ShapeTool.hxx>
 #include <gp_Trsf.hxx>
 #include <string>
@@ -92,6 +94,20 @@ TEST_F(NamesOfDocument, OccurrencesKeepTheirNamesUnlessTheyCountTheProduct) {
   place(assembly, bolt, "bolt_1"), place(assembly, bolt, "2");
   shapes_->UpdateAssemblies();
   EXPECT_EQ(names(), (std::vector<std::string>{"pin left", "pin right", "pin", "bolt", "bolt#2"}));
+}
+
+TEST_F(NamesOfDocument, OccurrencesHaveTheirProductAndItsMaterial) {
+  const TDF_Label assembly = assembly_of("ASSEMBLY"), pin = shapes_->AddShape(box(0), false);
+  TDataStd_Name::Set(pin, "pin");
+  const auto word = [](const char* text) { return new TCollection_HAsciiString(text); };
+  XCAFDoc_DocumentTool::MaterialTool(document_->Main())
+      ->SetMaterial(pin, word("steel"), word(""), 7.85, word("density measure"), word("POSITIVE_RATIO_MEASURE"));
+  place(assembly, pin, "pin left"), place(assembly, pin, "2");
+  shapes_->UpdateAssemblies();
+  Part part;
+  take_document(document_, {}, part);
+  ASSERT_EQ(part.solids.size(), 2u);
+  for (const Body& body : part.solids) EXPECT_EQ(body.product + " of " + body.material, "pin of steel");
 }
 
 TEST_F(NamesOfDocument, EqualNamesHaveThoseOfTheAssembliesThatTheyOccurIn) {

@@ -148,6 +148,25 @@ TEST_F(CadProgram, TouchingSolidsShareAFace) {
   EXPECT_FALSE(model_of_file(written("touching", ".brep"), {"--no-fuse"}).fused);
 }
 
+TEST_F(CadProgram, WithoutTrianglesFacesAndEdgesAreKnown) {
+  const Answer answer = run_reader(written("fitted", ".step"), {}, "end\n");
+  ASSERT_TRUE(answer.opened);
+  const CadModel& m = answer.opened->model;
+  EXPECT_TRUE(m.triangles.empty());
+  std::size_t cylinders = 0;
+  for (const cad::Face& face : m.faces) {
+    const bool is_contact = face.sides[0] != kNone && face.sides[1] != kNone;
+    EXPECT_EQ(face.piece != kNone, is_contact);
+    cylinders += face.surface.kind == SurfaceRecord::Kind::kCylinder;
+    EXPECT_LT(face.low.u, face.high.u);
+  }
+  EXPECT_GE(cylinders, 1u);
+  EXPECT_TRUE(std::ranges::all_of(m.edges, [](const cad::CadEdge& e) { return !e.faces.empty() && e.length > 0; }));
+  ASSERT_EQ(m.shared.size(), 1u);
+  EXPECT_EQ(m.shared[0].solids, (std::array<std::uint32_t, 2>{0, 1}));
+  EXPECT_NEAR(m.shared[0].depth, 0.01, 1e-3);
+}
+
 TEST_F(CadProgram, OverlapIsRefusedWithItsVolume) {
   const std::string file = written("overlapping", ".brep");
   const Answer answer = run_reader(file, {}, kFine);
@@ -360,6 +379,7 @@ TEST_F(CadProgram, InstancesAreNumberedAndNamesOfAnyCodePageAreUtf8) {
     ASSERT_EQ(m.solids.size(), 2u);
     EXPECT_EQ(m.solids[0].labels.name, "Tr\u00e4ger");
     EXPECT_EQ(m.solids[1].labels.name, "Tr\u00e4ger#2");
+    EXPECT_EQ(m.solids[1].product, "Tr\u00e4ger");
   }
 }
 
