@@ -12,14 +12,6 @@
 namespace octafront {
 namespace {
 
-/// The numbers of the parts of a name.
-std::vector<std::uint32_t> numbers_of_name(const std::vector<std::string>& names, const std::string& name) {
-  std::vector<std::uint32_t> numbers;
-  for (std::uint32_t i = 0; i < names.size(); ++i)
-    if (names[i] == name && !name.empty()) numbers.push_back(i);
-  return numbers;
-}
-
 /// The number of the part without a name that is called so, "curve_4".
 std::vector<std::uint32_t> number_of_label(const std::vector<std::string>& names, const std::string& prefix,
                                            const std::string& label, std::uint32_t parts) {
@@ -69,9 +61,8 @@ std::vector<NamesOfKind> names_in(const TetMesh& mesh) {
 /// All that is called so: by name before by number.
 MeshItems items_called(const TetMesh& mesh, std::string_view option, const std::string& name) {
   MeshItems items;
-  std::vector<std::uint32_t> regions = numbers_of_name(mesh.region_names, name),
-                             curves = numbers_of_name(mesh.curve_names, name),
-                             patches = numbers_of_name(mesh.patch_names, name);
+  std::vector<std::uint32_t> regions = named_so(mesh.region_names, name), curves = named_so(mesh.curve_names, name),
+                             patches = named_so(mesh.patch_names, name);
   bool found = !regions.empty() || !curves.empty() || !patches.empty();
   for (const NamedSet& set : mesh.sets) {
     if (set.name != name) continue;

@@ -103,19 +103,15 @@ std::string patch_label(const std::vector<std::string>& names, std::uint32_t pat
 
 std::vector<std::uint32_t> patches_called(const std::vector<std::string>& names, const std::vector<char>& is_there,
                                           const std::string& name) {
-  const auto those = [&](const auto& is_meant) {
-    std::vector<std::uint32_t> patches;
-    for (std::uint32_t p = 0; p < is_there.size(); ++p)
-      if (is_there[p] && is_meant(p)) patches.push_back(p);
-    return patches;
-  };
-  const auto given = [&](std::uint32_t p) { return p < names.size() ? names[p] : std::string(); };
+  std::vector<std::string> there(is_there.size());  // what is not there has no name
+  for (std::uint32_t p = 0; p < is_there.size(); ++p)
+    if (is_there[p] && p < names.size()) there[p] = names[p];
   if (name.empty()) return {};
-  if (auto exact = those([&](std::uint32_t p) { return given(p) == name; }); !exact.empty()) return exact;
-  if (auto all = those([&](std::uint32_t p) { return given(p).starts_with(name + " ("); }); !all.empty()) return all;
-  return those([&](std::uint32_t p) {
-    return name == std::to_string(p + 1) || (given(p).empty() && name == patch_label(names, p));
-  });
+  std::vector<std::uint32_t> patches = named_so(there, name);
+  for (std::uint32_t p = 0; p < is_there.size() && patches.empty(); ++p)
+    if (is_there[p] && (name == std::to_string(p + 1) || (there[p].empty() && name == patch_label(names, p))))
+      patches.push_back(p);
+  return patches;
 }
 
 std::vector<std::uint32_t> patches_called(std::string_view option, const std::vector<std::string>& names,

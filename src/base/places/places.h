@@ -10,7 +10,6 @@
 #include "base/mesh/edge_table.h"
 
 #include <cstdint>
-#include <optional>
 #include <span>
 #include <string>
 #include <string_view>
@@ -40,9 +39,15 @@ std::vector<Place> places_listed(std::string_view option, const std::string& lis
 /// What a part is called that may have no name: "patch_3" is the third patch.
 std::string patch_label(const std::vector<std::string>& names, std::uint32_t patch);
 
-/// The patches among the first ones, `is_there`, that are called so: by name; else those of a name that stands for one
-/// in each pair of regions, "fault" for "fault (clay|sand)"; else by number, from 1, or as "patch_3". None if there is
-/// none.
+/// Which of the names a name stands for, ascending: those that are it, or a piece of it, "A|B#2" of "A|B", where
+/// "A|B#1" is the first alone; else those of a name that stands for one in each pair of regions, "fault" for "fault
+/// (clay|sand)"; else "B|A" for "A|B".
+std::vector<std::uint32_t> named_so(const std::vector<std::string>& names, const std::string& name);
+/// A name that named_so() takes for this one alone.
+std::string alone(const std::vector<std::string>& names, const std::string& name);
+
+/// The patches among the first ones, `is_there`, that are called so: by name, as named_so() says; else by number, from
+/// 1, or as "patch_3". None if there is none.
 std::vector<std::uint32_t> patches_called(const std::vector<std::string>& names, const std::vector<char>& is_there,
                                           const std::string& name);
 /// The same; throws OptionError if there is none.
@@ -59,7 +64,7 @@ std::string no_such_place(const std::string& name, const std::vector<NamesOfKind
 
 /// What lies at a place of a surface.
 struct SurfaceItems {
-  std::optional<std::uint32_t> region;
+  std::vector<std::uint32_t> regions;
   std::vector<std::uint32_t> triangles;  ///< of patches, or with all corners in a box or ball; ascending
   std::vector<Edge> edges;               ///< of a curve
 };
@@ -77,7 +82,6 @@ class SurfacePlaces {
   SurfaceItems at(std::string_view option, const Place& place) const;
 
  private:
-  std::optional<std::uint32_t> region(const std::string& name) const;
   std::vector<std::uint32_t> triangles_of(const std::vector<std::uint32_t>& patches) const;
   std::vector<std::pair<std::string, Edge>> curves() const;
   SurfaceItems called(std::string_view option, const std::string& name) const;

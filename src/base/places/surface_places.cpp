@@ -41,12 +41,6 @@ SurfacePlaces::SurfacePlaces(const SurfaceMesh& surface, const EdgeTable* edges)
   for (std::uint32_t r = 0; r < region_count(surface); ++r) regions_.push_back(region_name(surface, r));
 }
 
-std::optional<std::uint32_t> SurfacePlaces::region(const std::string& name) const {
-  const auto found = std::ranges::find(regions_, name);
-  if (found == regions_.end()) return std::nullopt;
-  return static_cast<std::uint32_t>(found - regions_.begin());
-}
-
 std::vector<std::uint32_t> SurfacePlaces::triangles_of(const std::vector<std::uint32_t>& patches) const {
   std::vector<std::uint32_t> triangles;
   if (patches.empty()) return triangles;
@@ -71,19 +65,20 @@ std::vector<std::pair<std::string, Edge>> SurfacePlaces::curves() const {
 }
 
 SurfaceItems SurfacePlaces::called(std::string_view option, const std::string& name) const {
-  SurfaceItems items;
-  items.region = region(name);
-  for (const auto& [curve, edge] : curves())
-    if (curve == name) items.edges.push_back(edge);
+  SurfaceItems items{named_so(regions_, name), {}, {}};
+  const std::vector<std::pair<std::string, Edge>> edges = curves();
+  std::vector<std::string> curve_of;
+  for (const auto& [curve, edge] : edges) curve_of.push_back(curve);
+  for (const std::uint32_t e : named_so(curve_of, name)) items.edges.push_back(edges[e].second);
   const std::vector<std::uint32_t> patches = patches_called(surface_.patch_names, is_there_, name);
-  const bool is_named = items.region || !items.edges.empty();
+  const bool is_named = !items.regions.empty() || !items.edges.empty();
   const bool by_number =
       !patches.empty() && std::ranges::find(surface_.patch_names, name) == surface_.patch_names.end();
   if (!is_named || !by_number) items.triangles = triangles_of(patches);
   // Another way to write a number of a region, which it has no name for.
   for (std::uint32_t r = 0; r < regions_.size() && !is_named && items.triangles.empty(); ++r)
-    if (name == fmt::format("region {}", r + 1)) items.region = r;
-  if (!items.region && items.triangles.empty() && items.edges.empty()) refuse(option, name);
+    if (name == fmt::format("region {}", r + 1)) items.regions = {r};
+  if (items.regions.empty() && items.triangles.empty() && items.edges.empty()) refuse(option, name);
   return items;
 }
 

@@ -19,9 +19,10 @@ std::vector<std::uint8_t> walls_named(const SurfaceMesh& surface, const std::str
   for (const Place& place : places_listed("on", names, ',', surface.patch_names)) {
     const SurfaceItems items = places.at("on", place);
     for (const std::uint32_t f : items.triangles) is_wall[f] = 1;
-    if (!items.region || !items.triangles.empty()) continue;  // a patch goes before a region of its name
-    for (std::size_t f = 0; f < is_wall.size(); ++f)
-      if (std::ranges::count(surface.sides_of(f), *items.region) == 1) is_wall[f] = 1;
+    if (!items.triangles.empty()) continue;  // a patch goes before a region of its name
+    for (const std::uint32_t region : items.regions)
+      for (std::size_t f = 0; f < is_wall.size(); ++f)
+        if (std::ranges::count(surface.sides_of(f), region) == 1) is_wall[f] = 1;
   }
   return is_wall;
 }
@@ -31,8 +32,9 @@ std::vector<std::uint32_t> regions_named(const SurfaceMesh& surface, const std::
   std::vector<std::uint8_t> is_chosen(places.regions().size(), names.empty());
   for (const Place& place : places_listed("in", names, ',', places.regions())) {
     const SurfaceItems items = places.at("in", place);
-    if (!items.region) throw OptionError(fmt::format("`in` is a list of regions, and \"{}\" is none", place.text));
-    is_chosen[*items.region] = 1;
+    if (items.regions.empty())
+      throw OptionError(fmt::format("`in` is a list of regions, and \"{}\" is none", place.text));
+    for (const std::uint32_t region : items.regions) is_chosen[region] = 1;
   }
   std::vector<std::uint32_t> regions;
   for (std::uint32_t r = 0; r < is_chosen.size(); ++r)

@@ -39,10 +39,13 @@ class Named {
       const double h = std::max(named.size, options_.min_size.value_or(0));
       const SurfaceItems items = places_.at("size_of", place_of("size_of", named.name));
       if (named.of_thickness > 0) {
-        ask_by_thickness(items, named, h);
+        if (items.regions.empty())
+          throw OptionError(
+              fmt::format("`size_of`: \"{}\" is no region: only regions have sizes by their thickness", named.name));
+        for (const std::uint32_t region : items.regions) ask_by_thickness(region, named, h);
         continue;
       }
-      if (items.region) ask_region(*items.region, named.name, h);
+      for (const std::uint32_t region : items.regions) ask_region(region, named.name, h);
       for (const std::uint32_t t : items.triangles) result_.face[t] = std::min(result_.face[t], h);
       for (const Edge& edge : items.edges) ask_edge(edge, h);
     }
@@ -57,20 +60,17 @@ class Named {
     add_inside(boundary_of_region(surface_, region), name, h);
   }
 
-  void ask_by_thickness(const SurfaceItems& items, const NamedSize& named, double least) {
-    if (!items.region)
-      throw OptionError(
-          fmt::format("`size_of`: \"{}\" is no region: only regions have sizes by their thickness", named.name));
+  void ask_by_thickness(std::uint32_t region, const NamedSize& named, double least) {
     const double most = std::max(named.most, least);
     parallel_for(surface_.triangles.size(), [&](std::size_t t) {
       const auto [front, behind] = surface_.sides_of(static_cast<std::uint32_t>(t));
       for (const auto& [side, into] : {std::pair{front, 1.0}, {behind, -1.0}})
-        if (side == *items.region)
+        if (side == region)
           result_.face[t] = std::min(
               result_.face[t],
               std::clamp(named.of_thickness * thickness(t, into, least, most / named.of_thickness), least, most));
     });
-    add_inside(boundary_of_region(surface_, *items.region), named.name, most);
+    add_inside(boundary_of_region(surface_, region), named.name, most);
   }
 
   /// From the middle of a triangle along its normal, or against it, to what faces it: within 60 degrees, for walls of

@@ -47,7 +47,7 @@ class Nearby {
         box_ = Box3{ball->center, ball->center}, radius_ = ball->radius;
     } else {
       const SurfaceItems items = places.at("size_near", place);
-      if (items.region) inside_.emplace(boundary_of_region(surface, *items.region));
+      for (const std::uint32_t region : items.regions) inside_.emplace_back(boundary_of_region(surface, region));
       add(surface, items.triangles, items.edges);
     }
     tree_.emplace(points_, triangles_);
@@ -56,9 +56,11 @@ class Nearby {
   double distance(Vec3 p) const {
     if (box_) return std::max(0.0, length(max(max(p - box_->hi, box_->lo - p), Vec3{})) - radius_);
     double nearest = tree_->empty() ? kNothing : std::sqrt(tree_->nearest(p).squared_distance);
-    if (!inside_ || nearest == 0) return nearest;
-    if (inside_->contains(p)) return 0;
-    return std::min(nearest, std::sqrt(inside_->nearest(p).squared_distance));
+    for (const TriangleTree& region : inside_) {
+      if (nearest == 0 || region.contains(p)) return 0;
+      nearest = std::min(nearest, std::sqrt(region.nearest(p).squared_distance));
+    }
+    return nearest;
   }
 
  private:
@@ -77,8 +79,8 @@ class Nearby {
   std::vector<Vec3> points_;
   std::vector<Triangle> triangles_;
   std::optional<TriangleTree> tree_;
-  std::optional<TriangleTree> inside_;  ///< of a region
-  std::optional<Box3> box_;             ///< a box; a ball is a point with a radius
+  std::vector<TriangleTree> inside_;  ///< of regions
+  std::optional<Box3> box_;           ///< a box; a ball is a point with a radius
   double radius_ = 0;
 };
 

@@ -3,8 +3,11 @@
 #include <octafront/error.h>
 
 #include "base/mesh/known_surface.h"
+#include "base/places/shape_place.h"
 #include "support/named_surfaces.h"
 #include "support/rich_mesh.h"
+
+#include <algorithm>
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
@@ -54,6 +57,55 @@ TEST(Places, OfPatchesAreNamesThenSharesOfANameThenNumbers) {
     EXPECT_THAT(patches_called(names, is_there, none), SizeIs(0)) << none;
 }
 
+TEST(Places, OfANameAreItsPiecesToo) {
+  const Texts names{"wall", "wall#2", "wall#x", "a|b", "a|b#2", "a|b#10", "walls"};
+  EXPECT_THAT(named_so(names, "wall"), ElementsAre(0, 1));
+  EXPECT_THAT(named_so(names, "wall#1"), ElementsAre(0)) << "the first alone";
+  EXPECT_THAT(named_so(names, "wall#2"), ElementsAre(1));
+  EXPECT_THAT(named_so(names, "a|b"), ElementsAre(3, 4, 5));
+  EXPECT_THAT(named_so(names, "b|a"), ElementsAre(3, 4, 5)) << "whichever is written first";
+  EXPECT_THAT(named_so(names, "b|a#2"), SizeIs(0)) << "b and a#2";
+  for (const char* none : {"", "wall#", "wall#3", "#2", "b", "a|b|"})
+    EXPECT_THAT(named_so(names, none), SizeIs(0)) << none;
+  for (const std::string& name : names) EXPECT_THAT(named_so(names, alone(names, name)), SizeIs(1)) << name;
+  EXPECT_EQ(alone(names, "walls"), "walls");
+}
+
+TEST(Places, OfRegionsMeanAllOfAName) {
+  SurfaceMesh two = testing::joined(testing::cube(), testing::transformed(testing::cube(), 1, {3, 0, 0}));
+  two.sides.assign(two.triangles.size(), {kNone, 0});
+  std::fill(two.sides.begin() + 12, two.sides.end(), Sides{kNone, 1});
+  two.region_names = {"bolt", "bolt#2"};
+  const SurfacePlaces places(two);
+  EXPECT_THAT(places.at("in", place_of("in", "bolt")).regions, ElementsAre(0, 1));
+  EXPECT_THAT(places.at("in", place_of("in", "bolt#1")).regions, ElementsAre(0));
+  EXPECT_THAT(places.at("in", place_of("in", "bolt#2")).regions, ElementsAre(1));
+}
+
+TEST(Places, SayWhatSomethingIsLike) {
+  using ShapeKind = ShapePlace::Kind;
+  const auto kind = [](const char* text) {
+    const std::optional<ShapePlace> place = shape_place_of(text);
+    return place ? std::optional(place->kind) : std::nullopt;
+  };
+  EXPECT_EQ(kind("plane"), ShapeKind::kPlanes);
+  EXPECT_EQ(kind("free faces"), ShapeKind::kFreeFaces);
+  EXPECT_EQ(kind("tori of radius 2"), ShapeKind::kTori);
+  EXPECT_EQ(kind("points at y max"), ShapeKind::kPoints);
+  const std::optional<ShapePlace> all = shape_place_of("largest cylinder of radius 2.5e1 of lower plate at z min");
+  ASSERT_TRUE(all);
+  EXPECT_EQ(all->kind, ShapeKind::kCylinders);
+  EXPECT_EQ(all->which, ShapePlace::Which::kLargest);
+  EXPECT_EQ(all->radius, 25);
+  EXPECT_EQ(all->of, "lower plate");
+  EXPECT_EQ(all->axis, 2);
+  EXPECT_FALSE(all->at_max);
+  for (const char* none :
+       {"", "wall", "planets", "plane 3", "planes of radius 3", "cylinders of radius -1", "cylinders of radius x",
+        "largest", "largest points", "plane at w min", "plane at z", "cylinder ofradius 3"})
+    EXPECT_FALSE(shape_place_of(none)) << none;
+}
+
 TEST(Places, OfASurfaceWithoutNamesAreCalledAsFilesCallThem) {
   const KnownSurface cube(testing::cube(2), 40);
   const SurfacePlaces places(cube.mesh(), &cube.edges());
@@ -61,8 +113,8 @@ TEST(Places, OfASurfaceWithoutNamesAreCalledAsFilesCallThem) {
   EXPECT_THAT(at("patch_3").triangles, SizeIs(8));
   EXPECT_EQ(at("3").triangles, at("patch_3").triangles);
   EXPECT_THAT(at("patches:patch_3,4").triangles, SizeIs(16));
-  EXPECT_EQ(at("body").region, 0U);
-  EXPECT_EQ(at("region 1").region, 0U);
+  EXPECT_THAT(at("body").regions, ElementsAre(0U));
+  EXPECT_THAT(at("region 1").regions, ElementsAre(0U));
   EXPECT_THAT(at("patch_1|patch_3").edges, SizeIs(2));
   EXPECT_THAT(at("box:0,0,0,1,1,0").triangles, SizeIs(8));
   EXPECT_THAT(at("sphere:0,0,0,1e-9").triangles, SizeIs(0));
