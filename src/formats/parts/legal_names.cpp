@@ -65,6 +65,23 @@ std::string LegalNames::note() const {
   return changed_.size() > kMost ? all + fmt::format(" and {} more", changed_.size() - kMost) : all;
 }
 
+std::string ShortNames::fitting(const std::string& name) {
+  const auto known = known_.find(name);
+  if (known != known_.end()) return known->second;
+  const auto cut_to = [&](std::size_t end) {
+    const auto is_inside = [](char c) { return (static_cast<unsigned char>(c) & 0xC0U) == 0x80U; };
+    while (end > 0 && end < name.size() && is_inside(name[end])) --end;
+    return name.substr(0, end);
+  };
+  std::string made = cut_to(longest_);
+  for (int n = 2; taken_.contains(made); ++n) {
+    const std::string ending = fmt::format("_{}", n);
+    made = cut_to(longest_ - ending.size()) + ending;
+  }
+  taken_.insert(made);
+  return known_[name] = made;
+}
+
 std::vector<std::string> legal_names(MeshOutput& out, const MeshParts& mesh, const NameRules& rules,
                                      std::span<const Part::Origin> of) {
   LegalNames of_elements(rules), of_others(rules);

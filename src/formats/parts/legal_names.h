@@ -4,6 +4,7 @@
 
 #include <array>
 #include <cstddef>
+#include <map>
 #include <set>
 #include <span>
 #include <string>
@@ -41,6 +42,19 @@ class LegalNames {
   NameRules rules_;
   std::set<std::string> taken_;
   std::vector<std::string> changed_;
+};
+
+/// Names cut to so many bytes, between letters of UTF-8, where the format takes all else: two that were different stay
+/// so.
+class ShortNames {
+ public:
+  explicit ShortNames(std::size_t longest) : longest_(longest) {}
+  std::string fitting(const std::string& name);
+
+ private:
+  std::size_t longest_;
+  std::map<std::string, std::string> known_;  ///< and what they became
+  std::set<std::string> taken_;
 };
 
 class MeshOutput;

@@ -147,7 +147,7 @@ class CgnsWriter {
       const std::string prefix = part.kind == Kind::kElements ? "" : part.kind == Kind::kFaces ? "faces " : "edges ";
       const std::string suffix = begin == 0 ? "" : type.suffix;
       const std::string name = (prefix + names_[p]).substr(0, kName - 1 - suffix.size()) + suffix;
-      write_section(zone + "/" + name, part.kind, type, std::span(all).subspan(begin, end - begin));
+      write_section(zone + "/" + sections_.legal(name), part.kind, type, std::span(all).subspan(begin, end - begin));
     }
     ranges_[p][1] = next_ - 1;
   }
@@ -197,6 +197,7 @@ class CgnsWriter {
   const MeshParts& mesh_;
   MixedCells cells_;
   std::vector<std::string> names_;
+  LegalNames sections_{kRules};  ///< which names behind "faces " may be too long for
   std::vector<FieldColumn> of_nodes_, of_cells_;
   std::vector<std::uint32_t> order_;                 ///< cells as their sections stand
   std::int32_t next_ = 1;                            ///< the number of the next element

@@ -137,7 +137,7 @@ class MedWriter {
     file_.group(family + "/GRO");
     file_.attribute(family + "/GRO", "NBR", static_cast<std::int32_t>(parts.size()));
     std::vector<std::string> names;
-    for (const std::uint32_t p : parts) names.push_back(one_line(mesh_.parts()[p].name).substr(0, kLongestGroup));
+    for (const std::uint32_t p : parts) names.push_back(groups_.fitting(one_line(mesh_.parts()[p].name)));
     file_.texts(family + "/GRO/NOM", names, kLongestGroup);
   }
 
@@ -272,6 +272,7 @@ class MedWriter {
   const MeshParts& mesh_;
   MixedCells cells_;
   std::vector<MedField> fields_;
+  ShortNames groups_{kLongestGroup};
   std::int32_t next_family_ = -1;
 };
 
