@@ -7,6 +7,8 @@
 #include "text.h"
 #include "units.h"
 
+#include <algorithm>
+#include <cmath>
 #include <utility>
 
 #include <fmt/core.h>
@@ -72,8 +74,66 @@ void tell_surface_info(Session& session) {
   session.say("octafront check says whether it can be meshed, octafront mesh --dry-run what that would take\n");
 }
 
-/// Of more solids the first ones are listed.
-constexpr std::size_t kListedSolids = 40;
+/// Says the first of these lines.
+void say_first(Session& session, const std::vector<std::string>& lines) {
+  constexpr std::size_t kListedLines = 40;
+  for (std::size_t k = 0; k < std::min(kListedLines, lines.size()); ++k) session.say("  " + lines[k] + "\n");
+  if (lines.size() > kListedLines)
+    session.say(fmt::format("  ... and {} more: --json has all of them\n", lines.size() - kListedLines));
+}
+
+/// A line for each product: of several occurrences their names.
+std::vector<std::string> parts_in_words(const CadInfo& info) {
+  constexpr double kSameVolume = 1e-6;  // of occurrences, which are integrated one by one
+  std::vector<std::string> lines;
+  std::vector<char> is_told(info.solids.size(), 0);
+  for (std::size_t s = 0; s < info.solids.size(); ++s) {
+    if (is_told[s]) continue;
+    const CadInfo::Solid& solid = info.solids[s];
+    std::vector<std::string> occurrences;
+    for (std::size_t k = s; k < info.solids.size(); ++k) {
+      const CadInfo::Solid& other = info.solids[k];
+      if (k != s && (solid.product.empty() || other.product != solid.product ||
+                     std::abs(other.volume - solid.volume) > kSameVolume * solid.volume))
+        continue;
+      is_told[k] = 1, occurrences.push_back(other.name);
+    }
+    std::string line = occurrences.size() == 1 ? fmt::format("solid \"{}\"", solid.name)
+                                               : fmt::format("part \"{}\", {} times, {}: each", solid.product,
+                                                             occurrences.size(), listed(occurrences));
+    line += fmt::format("{} volume {:.6g}, area {:.6g}", occurrences.size() == 1 ? ":" : "", solid.volume, solid.area);
+    if (!solid.material.empty()) line += fmt::format(", of {}", solid.material);
+    if (!solid.color.empty()) line += fmt::format(", color {}", solid.color);
+    lines.push_back(std::move(line));
+  }
+  return lines;
+}
+
+/// Those that the file names; contacts have lines of their own.
+std::vector<std::string> patches_in_words(const CadInfo& info) {
+  std::vector<std::string> lines;
+  for (const CadInfo::Patch& patch : info.patches) {
+    if (patch.name.starts_with("face ") || patch.solids.size() > 1) continue;
+    lines.push_back(fmt::format("patch \"{}\": {}, area {:.6g}{}", patch.name, patch.shape, patch.area,
+                                patch.faces > 1 ? fmt::format(", {} faces", patch.faces) : ""));
+  }
+  return lines;
+}
+
+std::vector<std::string> contacts_in_words(const CadInfo& info) {
+  std::vector<std::string> lines;
+  for (const CadInfo::Contact& contact : info.contacts) {
+    std::string line = fmt::format("contact of \"{}\" and \"{}\": ", contact.solids[0], contact.solids[1]);
+    if (!contact.shape.empty()) line += fmt::format("{}, area {:.6g}", contact.shape, contact.area);
+    if (contact.gap > 0) line += fmt::format(", a gap of {:.4g}", contact.gap);
+    if (contact.overlap > 0)
+      line += fmt::format("{}overlap of {:.4g}, {:.3g} deep", contact.shape.empty() ? "" : ", ", contact.overlap,
+                          contact.depth);
+    if (!contact.patch.empty()) line += fmt::format(", patch \"{}\"", contact.patch);
+    lines.push_back(std::move(line));
+  }
+  return lines;
+}
 
 void tell_cad_info(Session& session) {
   const Arguments& a = session.arguments();
@@ -85,18 +145,17 @@ void tell_cad_info(Session& session) {
   session.say_notes("CAD", info.notes);
   session.say(fmt::format("  {}\n  unit: {}; all lengths here are in {}\n", box_in_words(info.box),
                           info.unit.empty() ? "the file does not say, taken as millimetre" : info.unit, info.lengths));
-  for (std::size_t s = 0; s < std::min(kListedSolids, info.solids.size()); ++s)
-    session.say(fmt::format("  solid \"{}\": volume {:.6g}, area {:.6g}\n", info.solids[s].name, info.solids[s].volume,
-                            info.solids[s].area));
-  if (info.solids.size() > kListedSolids)
-    session.say(fmt::format("  ... and {} more: --json has all of them\n", info.solids.size() - kListedSolids));
+  say_first(session, parts_in_words(info));
+  say_first(session, patches_in_words(info));
+  say_first(session, contacts_in_words(info));
   for (const CadInfo::Group& group : info.groups)
     session.say(fmt::format("  {}: {}\n", group.name,
                             group.faces > 0 ? counted(group.faces, "face") : counted(group.solids, "solid")));
   PlaceNames names;
   for (const CadInfo::Solid& solid : info.solids) names.regions.push_back(solid.name);
   for (const CadInfo::Group& group : info.groups) names.sets.push_back(group.name);
-  names.patches = info.faces, names.curves = info.edges;
+  for (const CadInfo::Patch& patch : info.patches) names.patches.push_back(patch.name);
+  names.curves = info.edges;
   tell_places(session, names);
   session.say("octafront mesh --dry-run says what meshing would take\n");
 }

@@ -4,6 +4,7 @@
 #include <octafront/no_context.h>
 #include <octafront/vec.h>
 
+#include <array>
 #include <cstdint>
 #include <string>
 #include <vector>
@@ -22,6 +23,26 @@ struct CadInfo {
     std::string name;
     std::string layer;
     double volume = 0, area = 0;  ///< of the true geometry
+    std::string color;            ///< "#ff8000"; empty: none
+    std::string product;          ///< that it is an occurrence of; empty: the file says none
+    std::string material;         ///< the same
+  };
+  /// Faces of one name, which are one patch of a mesh.
+  struct Patch {
+    std::string name;
+    std::size_t faces = 0;
+    double area = 0;
+    std::string shape;                ///< "plane", "cylinder of radius 3", "free face", several with "and"
+    std::vector<std::string> solids;  ///< that it bounds
+  };
+  /// Where two solids touch, nearly touch, or overlap.
+  struct Contact {
+    std::array<std::string, 2> solids;
+    std::string patch;  ///< by which options find it; empty where no faces are shared
+    double area = 0;    ///< of the shared faces; where there is a gap of what lies face to face, about
+    std::string shape;
+    double gap = 0;                 ///< > 0: they nearly touch
+    double overlap = 0, depth = 0;  ///< volume of what both fill, and how thick that is
   };
   /// A colour or a layer, as it becomes a set of the mesh.
   struct Group {
@@ -34,7 +55,9 @@ struct CadInfo {
   std::string lengths = "mm";  ///< the unit of the lengths here: CadIntake::unit
   Box3 box;
   std::vector<Solid> solids;
-  std::vector<std::string> faces;  ///< their names, of the solids and of those beside them
+  std::vector<std::string> faces;  ///< their names, of the solids and of those beside them; several may share one
+  std::vector<Patch> patches;      ///< the same, each name once
+  std::vector<Contact> contacts;
   std::vector<std::string> edges;  ///< between faces, by the faces that meet: "face 1|face 2"; each name once
   std::vector<Group> groups;
   std::uint64_t named_faces = 0;   ///< that have a name in the file

@@ -1,6 +1,7 @@
 #include "cad/shapes/face_groups.h"
 
 #include "base/core/disjoint_sets.h"
+#include "cad/shapes/cad_places.h"
 #include "cad/shapes/names.h"
 
 #include <algorithm>
@@ -61,29 +62,24 @@ FaceGroups groups_of(const CadModel& model, DisjointSets& sets) {
     if (model.faces[f].area > model.faces[largest[n]].area) largest[n] = f;
   }
   for (const std::uint32_t f : largest) groups.names.push_back(names[f]);
+  groups.names = all_different(std::move(groups.names));
   return groups;
 }
 
-/// Per face the first name of `apart`, by number, that the face or one of its labels (colours, layers) has; kNone:
-/// none. Faces are only joined with others of the same number, so that sizes asked by these names keep their faces.
-std::vector<std::uint32_t> which_of(const CadModel& model, std::span<const std::string> apart,
-                                    const std::vector<std::string>& names) {
+/// Per face the first place of `apart`, by number, that it lies at; kNone: none. Faces are only joined with others of
+/// the same number, so that sizes asked at these places keep their faces.
+std::vector<std::uint32_t> which_of(const CadModel& model, std::span<const std::string> apart, double unit) {
   std::vector<std::uint32_t> which(model.faces.size(), kNone);
-  const std::vector<LabelGroup> labels = label_groups(model);
-  for (std::uint32_t n = 0; n < apart.size(); ++n) {
-    for (std::size_t f = 0; f < names.size(); ++f)
-      if (names[f] == apart[n]) which[f] = std::min(which[f], n);
-    for (const LabelGroup& label : labels)
-      if (label.name == apart[n])
-        for (const std::uint32_t f : label.faces) which[f] = std::min(which[f], n);
-  }
+  const CadPlaces places(model, unit);
+  for (std::uint32_t n = 0; n < apart.size(); ++n)
+    for (const std::uint32_t f : places.faces(apart[n])) which[f] = std::min(which[f], n);
   return which;
 }
 
 }  // namespace
 
-std::vector<std::uint32_t> faces_named(const CadModel& model, std::span<const std::string> names) {
-  const std::vector<std::uint32_t> which = which_of(model, names, face_names(model));
+std::vector<std::uint32_t> faces_at(const CadModel& model, std::span<const std::string> places, double unit) {
+  const std::vector<std::uint32_t> which = which_of(model, places, unit);
   std::vector<std::uint32_t> faces;
   for (std::uint32_t f = 0; f < which.size(); ++f)
     if (which[f] != kNone) faces.push_back(f);
@@ -101,8 +97,9 @@ std::vector<double> mean_widths(const CadModel& model) {
   return width;
 }
 
-FaceGroups group_faces(const CadModel& model, std::optional<double> size, std::span<const std::string> apart) {
-  const std::vector<std::uint32_t> which = which_of(model, apart, face_names(model));
+FaceGroups group_faces(const CadModel& model, std::optional<double> size, std::span<const std::string> apart,
+                       double unit) {
+  const std::vector<std::uint32_t> which = which_of(model, apart, unit);
   const std::vector<double> width = mean_widths(model);
   const std::vector<char> in_cusp = edges_in_cusps(model);
   DisjointSets sets(model.faces.size());

@@ -13,21 +13,22 @@ namespace octafront::cad {
 /// Faces that are meshed as one patch.
 struct FaceGroups {
   std::vector<std::uint32_t> group_of;  ///< per face of the model; kNone for one without triangles
-  std::vector<std::string> names;       ///< per group: that of its largest face; all different
+  std::vector<std::string> names;       ///< per group: that of its largest face, made different from all others
 };
 
 /// Each face a group of its own, but for narrow ones: faces that an edge joins all along which both have the same
 /// tangent plane are one where one of them is narrower than `size` or the edge shorter than a tenth of it, and they lie
 /// between the same solids. So no line forces small elements where the surface is smooth. Without a size no width is
 /// narrow. So are faces beside such an edge that runs into another one at a sharp angle, as where a fillet ends in a
-/// cusp: the line would force flat elements. Faces with one of the names `apart`, their own or that of a label, are one
-/// with such of the same name alone.
-FaceGroups group_faces(const CadModel& model, std::optional<double> size, std::span<const std::string> apart = {});
+/// cusp: the line would force flat elements. Faces at one of the places `apart` are one with such at the same place
+/// alone; `unit`: of its radii, in the model's.
+FaceGroups group_faces(const CadModel& model, std::optional<double> size, std::span<const std::string> apart = {},
+                       double unit = 1);
 /// Each face a group.
 FaceGroups faces_as_they_are(const CadModel& model);
 
-/// The faces that have one of these names, their own or that of a label; ascending.
-std::vector<std::uint32_t> faces_named(const CadModel& model, std::span<const std::string> names);
+/// The faces at any of these places; ascending.
+std::vector<std::uint32_t> faces_at(const CadModel& model, std::span<const std::string> places, double unit = 1);
 
 /// The mean width of each face: twice its area over its perimeter; infinite where it has no edges.
 std::vector<double> mean_widths(const CadModel& model);

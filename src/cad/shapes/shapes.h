@@ -2,6 +2,7 @@
 
 #include "base/geometry/triangle_tree.h"
 #include "base/geometry/true_geometry.h"
+#include "cad/shapes/cad_places.h"
 #include "cad/shapes/face_groups.h"
 
 #include <cstdint>
@@ -27,6 +28,7 @@ class Shapes final : public TrueGeometry {
   std::uint32_t part_at(std::uint32_t patch, Vec3 p) const override;
   const std::vector<std::string>& part_names() const override { return part_names_; }
   std::uint32_t patch_of_part(std::uint32_t part) const override { return group_of_[part]; }
+  FoundShapes find(const std::string& place) const override { return CadPlaces(model_, millimetres_).find(place); }
   const std::vector<PartGroup>& groups() const override { return labelled_; }
 
  private:

@@ -4,6 +4,7 @@
 #include "doors/intake/intake.h"
 
 #include <nlohmann/json.hpp>
+#include <utility>
 
 namespace octafront {
 
@@ -21,14 +22,38 @@ std::string to_json(const Domain& domain) {
   return all.dump(-1, ' ', false, Json::error_handler_t::replace);
 }
 
+namespace {
+
+nlohmann::ordered_json json_of(const CadInfo::Contact& contact) {
+  nlohmann::ordered_json json{{"solids", contact.solids}};
+  if (!contact.patch.empty()) json["patch"] = contact.patch;
+  if (!contact.shape.empty()) json["shape"] = contact.shape, json["area"] = contact.area;
+  if (contact.gap > 0) json["gap"] = contact.gap;
+  if (contact.overlap > 0) json["overlap"] = contact.overlap, json["depth"] = contact.depth;
+  return json;
+}
+
+}  // namespace
+
 std::string to_json(const CadInfo& info) {
   using Json = nlohmann::ordered_json;
   const auto place = [](Vec3 p) { return Json::array({p.x, p.y, p.z}); };
   Json solids = Json::array();
   for (const CadInfo::Solid& solid : info.solids) {
     solids.push_back({{"name", solid.name}, {"volume", solid.volume}, {"area", solid.area}});
-    if (!solid.layer.empty()) solids.back()["layer"] = solid.layer;
+    for (const auto& [key, text] : {std::pair{"layer", &solid.layer}, std::pair{"color", &solid.color},
+                                    std::pair{"product", &solid.product}, std::pair{"material", &solid.material}})
+      if (!text->empty()) solids.back()[key] = *text;
   }
+  Json patches = Json::array();
+  for (const CadInfo::Patch& patch : info.patches)
+    patches.push_back({{"name", patch.name},
+                       {"faces", patch.faces},
+                       {"area", patch.area},
+                       {"shape", patch.shape},
+                       {"solids", patch.solids}});
+  Json contacts = Json::array();
+  for (const CadInfo::Contact& contact : info.contacts) contacts.push_back(json_of(contact));
   Json groups = Json::array();
   for (const CadInfo::Group& group : info.groups)
     groups.push_back({{"name", group.name}, {"faces", group.faces}, {"solids", group.solids}});
@@ -40,6 +65,8 @@ std::string to_json(const CadInfo& info) {
                  {"box", {place(info.box.lo), place(info.box.hi)}},
                  {"solids", solids},
                  {"faces", info.faces},
+                 {"cad_patches", patches},
+                 {"contacts", contacts},
                  {"edges", info.edges},
                  {"groups", groups},
                  {"named_faces", info.named_faces},

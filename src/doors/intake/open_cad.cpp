@@ -1,16 +1,15 @@
-#include <octafront/cad.h>
 #include <octafront/error.h>
 #include <octafront/options.h>
 #include <octafront/repair.h>
 #include <octafront/units.h>
 
 #include "base/core/wording.h"
-#include "base/mesh/curve_names.h"
 #include "cad/reader/cad_reader.h"
 #include "cad/shapes/collapse_tiny.h"
 #include "cad/shapes/face_groups.h"
 #include "cad/shapes/names.h"
 #include "cad/shapes/shapes.h"
+#include "doors/intake/cad_intake.h"
 #include "doors/intake/intake.h"
 #include "sizing/field/affordable.h"
 
@@ -18,7 +17,6 @@
 #include <array>
 #include <cmath>
 #include <iterator>
-#include <set>
 #include <utility>
 
 #include <fmt/format.h>
@@ -51,51 +49,6 @@ constexpr double kDepthOfThickness = 0.025, kMuchCurved = 0.6, kMostDeeper = 4;
 constexpr double kMostLost = 0.01;
 /// Elements that are asked to be so many times as large as all of the part were meant for another unit.
 constexpr double kFarLarger = 10;
-
-Overlap overlap_of_solids(ComplexOptions::Overlap asked) {
-  switch (asked) {
-    case ComplexOptions::Overlap::kAuto:
-      break;
-    case ComplexOptions::Overlap::kFirst:
-      return Overlap::kFirst;
-    case ComplexOptions::Overlap::kLater:
-      return Overlap::kLater;
-    case ComplexOptions::Overlap::kNew:
-      return Overlap::kNew;
-  }
-  return Overlap::kRefuse;
-}
-
-/// How many millimetres a unit has.
-double millimetres_of(const CadIntake& asked) {
-  return unit_named(asked.unit)->metres / unit_named("mm")->metres;
-}
-
-ReaderOptions reader_options(const IntakeOptions& options) {
-  const CadIntake& asked = options.cad;
-  return {overlap_of_solids(options.complex.overlap),
-          options.complex.tolerance.value_or(0) * millimetres_of(asked),
-          asked.heal,
-          asked.keep_going,
-          asked.seconds,
-          static_cast<std::uint64_t>(asked.memory_gigabytes * 1e9)};
-}
-
-void check_cad_intake(const CadIntake& asked) {
-  const auto require = [](bool ok, const char* what) {
-    if (!ok) throw OptionError(fmt::format("`{}` must be above 0", what));
-  };
-  require(!asked.size || *asked.size > 0, "cad_size");
-  require(!asked.elements || *asked.elements > 0, "cad_elements");
-  require(asked.seconds > 0, "cad_seconds");
-  require(asked.memory_gigabytes > 0, "cad_memory");
-  if (unit_named(asked.unit) == nullptr) throw OptionError(fmt::format("`cad_unit` \"{}\" is not known", asked.unit));
-}
-
-/// The same in the unit that a model's lengths are in.
-double unit_of(const CadModel& model, const CadIntake& asked) {
-  return model.per_millimetre * millimetres_of(asked);
-}
 
 std::string unit_in_words(const CadModel& model, const CadIntake& asked) {
   const std::string of_file = model.unit.empty() ? "unit not said, taken as millimetre" : "unit " + model.unit;
@@ -240,7 +193,7 @@ class CadIn {
   Triangulated attempt(const std::array<double, 2>& by) {
     CadModel model = reader_.triangulate({deflection_ * by[0], kAngle * by[1]});
     if (options_.cad.keep_edges) return judged(std::move(model));
-    const std::vector<std::uint32_t> spared = faces_named(model, options_.cad.apart);
+    const std::vector<std::uint32_t> spared = faces_at(model, options_.cad.apart, unit_of(model, options_.cad));
     return with_parts_ended(without_tiny(std::move(model), spared), spared);
   }
 
@@ -273,8 +226,9 @@ class CadIn {
 
   Triangulated judged(CadModel model) const {
     Triangulated made{std::move(model), {}, {}};
-    made.groups =
-        options_.cad.keep_edges ? faces_as_they_are(made.model) : group_faces(made.model, asked_, options_.cad.apart);
+    made.groups = options_.cad.keep_edges
+                      ? faces_as_they_are(made.model)
+                      : group_faces(made.model, asked_, options_.cad.apart, unit_of(made.model, options_.cad));
     made.surface = surface_of(made.model, made.groups);
     if (made.model.solids.empty()) return made;
     context_.report("checking", -1);
@@ -473,38 +427,3 @@ void finish_joined_cad(Domain& domain, const CadTaken& taken, ComplexOptions::Ov
 }
 
 }  // namespace octafront::intake
-
-namespace octafront {
-
-CadInfo read_cad_info(const std::string& file, const IntakeOptions& options, const RunContext& context) {
-  intake::check_cad_intake(options.cad);
-  CadInfo info;
-  const auto take = [&](const std::string& text) { info.notes.push_back(text); };
-  cad::ReaderOptions asked = intake::reader_options(options);
-  if (asked.overlap == cad::Overlap::kRefuse) asked.overlap = cad::Overlap::kTell;
-  const cad::CadReader reader(file, asked, take, context);
-  const auto& [lo, hi, model] = reader.opened();
-  info.notes.insert(info.notes.end(), model.notes.begin(), model.notes.end());
-  info.format = model.format, info.unit = model.unit, info.to_millimetres = model.to_millimetres;
-  const double unit = intake::unit_of(model, options.cad);
-  info.lengths = options.cad.unit;
-  info.box.add(lo / unit), info.box.add(hi / unit);
-  const std::vector<std::string> names = cad::solid_names(model);
-  for (std::size_t s = 0; s < names.size(); ++s)
-    info.solids.push_back({names[s], model.solids[s].labels.layer, model.solids[s].volume / (unit * unit * unit),
-                           model.solids[s].area / (unit * unit)});
-  for (const cad::LabelGroup& group : cad::label_groups(model))
-    info.groups.push_back({group.name, group.faces.size(), group.solids.size()});
-  info.faces = cad::face_names(model);
-  std::set<std::string> edges;
-  for (const cad::CadEdge& edge : model.edges) {
-    std::vector<std::uint32_t> faces = edge.faces;
-    std::ranges::sort(faces);
-    if (faces.size() > 1) edges.insert(curve_name(faces, info.faces));
-  }
-  info.edges.assign(edges.begin(), edges.end());
-  for (const cad::Face& face : model.faces) info.named_faces += !face.labels.name.empty();
-  return info;
-}
-
-}  // namespace octafront

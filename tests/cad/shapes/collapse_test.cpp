@@ -69,7 +69,7 @@ TEST(CollapseTiny, SparesFacesWithTheirEdges) {
   CadModel m = step();
   m.faces[1].labels.name = "step";
   const std::vector<std::string> named{"step"};
-  const std::vector<std::uint32_t> spared = faces_named(m, named);
+  const std::vector<std::uint32_t> spared = faces_at(m, named);
   EXPECT_EQ(spared, std::vector<std::uint32_t>{1});
   const Collapsed made = collapse_tiny(m, .05, spared);
   EXPECT_TRUE(made.faces.empty());

@@ -72,10 +72,48 @@ TEST(Groups, CountWhatIsTiny) {
   EXPECT_EQ(tiny_things(model, 1).shortest_edge, 4);
 }
 
-TEST(Names, AreAllDifferent) {
+using Words = std::vector<std::string>;
+
+TEST(Names, OfFacesMayBeShared) {
   CadModel model;
   for (const char* name : {"a", "", "a", "face 2", "a"}) model.faces.emplace_back().labels.name = name;
-  EXPECT_EQ(face_names(model), (std::vector<std::string>{"a", "face 2#2", "a#2", "face 2", "a#3"}));
+  EXPECT_EQ(face_names(model), (Words{"a", "face 2#2", "a", "face 2", "a"}));
+  model.face_of = {0, 1, 2, 3, 4}, model.triangles.resize(5);
+  EXPECT_EQ(faces_as_they_are(model).names, (Words{"a", "face 2#2", "a#2", "face 2", "a#3"}))
+      << "while they are meshed patches are apart";
+}
+
+/// Two solids, of one name or not, and faces between pairs of solids; kNone: outside.
+CadModel with_sides(const Words& solids, const std::vector<Sides>& sides) {
+  CadModel model;
+  for (const std::string& name : solids) model.solids.emplace_back().labels.name = name;
+  for (const Sides& s : sides) model.faces.emplace_back().sides = s;
+  return model;
+}
+
+TEST(Names, OfContactsAreThoseOfTheirSolids) {
+  CadModel model = with_sides({"plate", "bolt"}, {{kNone, 0}, {1, 0}, {0, 1}, {kNone, 1}, {0, 1}});
+  EXPECT_EQ(face_names(model), (Words{"face 1", "plate|bolt", "plate|bolt#2", "face 4", "plate|bolt#3"}));
+  model.faces[1].piece = model.faces[4].piece = 1;
+  EXPECT_EQ(face_names(model), (Words{"face 1", "plate|bolt", "plate|bolt#2", "face 4", "plate|bolt"}));
+  EXPECT_EQ(faces_between(model, "bolt|plate"), (std::vector<std::uint32_t>{1, 2, 4}));
+  EXPECT_TRUE(faces_between(model, "bolt").empty());
+}
+
+TEST(Names, OfPiecesAreNoneOfOtherContacts) {
+  const CadModel model = with_sides({"plate", "bolt", "bolt"}, {{0, 1}, {0, 1}, {0, 2}, {0, 2}});
+  EXPECT_EQ(face_names(model), (Words{"plate|bolt", "plate|bolt#3", "plate|bolt#2", "plate|bolt#2#2"}));
+}
+
+TEST(Names, AtSeveralSolidsAreFollowedByThem) {
+  CadModel model = with_sides({"nut", "bolt"}, {{kNone, 0}, {kNone, 1}, {kNone, 1}, {0, 1}});
+  for (Face& face : model.faces) face.labels.name = "end";
+  model.faces[2].labels.name = "head";
+  EXPECT_EQ(face_names(model), (Words{"end (nut)", "end (bolt)", "head", "end (nut|bolt)"}));
+  const std::vector<LabelGroup> groups = label_groups(model);
+  ASSERT_EQ(groups.size(), 1U) << "a contact whose faces have names of their own";
+  EXPECT_EQ(groups[0].name, "nut|bolt");
+  EXPECT_EQ(groups[0].faces, std::vector<std::uint32_t>{3});
 }
 
 TEST(Names, ColoursAndLayersAreGroups) {
