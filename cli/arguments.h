@@ -3,7 +3,6 @@
 #include <octafront/domain.h>
 #include <octafront/io.h>
 #include <octafront/limits.h>
-#include <octafront/named_groups.h>
 #include <octafront/options.h>
 #include <octafront/solver_checks.h>
 
@@ -52,7 +51,6 @@ struct Arguments {
   std::vector<TypedLength> lengths;  ///< that wait for it
   std::optional<Preset> preset;
   bool dry_run = false;
-  std::vector<GroupRule> groups;                              ///< that are added to it
   std::vector<std::pair<std::string, std::string>> samples;   ///< images and what their values are called on the mesh
   std::vector<std::pair<std::string, std::string>> formulas;  ///< fields by name and formula, in turn
   std::uint32_t material_bins = 0;                            ///< of the last field; 0: none

@@ -155,7 +155,6 @@ auto run_on_input(Session& session, const Generator& generator) {
   Domain domain;
   together(session.context().ranks, "input", [&] { domain = open_input(session, intake_for(options, a.intake)); });
   add_sizes_of_head(a, domain, options);
-  for (const GroupRule& rule : a.groups) check_group(domain.surface, rule);
   try {
     if (!a.page.empty()) find_repairs(session, domain.surface);
     return telling_what_was_made(session, [&] { return generator(domain, options, session.context()); });
@@ -338,7 +337,8 @@ void refuse_for_surfaces(const Arguments& a) {
   };
   refuse(!a.options.adapt.only.empty(), "--only"), refuse(!a.map_file.empty(), "--map"),
       refuse(!a.field.empty(), "--from");
-  refuse(!a.carry.empty(), "--carry"), refuse(!a.page.empty(), "--report"), refuse(!a.groups.empty(), "--group");
+  refuse(!a.carry.empty(), "--carry"), refuse(!a.page.empty(), "--report"),
+      refuse(!a.options.groups.empty(), "--group");
 }
 
 /// Triangles alone, as files have them; the sets that they had.

@@ -203,8 +203,13 @@ std::vector<LineOption> output_options() {
        }},
       {kWriters, kGroup, "--group", "NAME=PLACE",
        "Add a set of what lies at a place: NAME=box:X0,Y0,Z0,X1,Y1,Z1 or NAME=sphere:X,Y,Z,R of nodes, "
-       "NAME=elements:box:... and NAME=faces:box:... of others, NAME=patches:A,B, or NAME=NAME of what has a name",
-       each([](Arguments& a, const std::string& typed) { a.groups.push_back(group_rule(typed)); })},
+       "NAME=elements:box:... and NAME=faces:box:... of others, NAME=patches:A,B, or NAME=NAME of what has a name; of "
+       "CAD "
+       "also of what is like something: \"holes=cylinders of radius 3\"",
+       each([](Arguments& a, const std::string& typed) {
+         group_rule(typed);  // refused at once if it is none
+         a.options.groups.push_back(typed);
+       })},
       {kWriters, kGroup, "--sample", "IMAGE=NAME",
        "Values of an image as the field NAME of elements (the mean of their voxels) and nodes (linear between voxels), "
        "in formats that hold fields: --sample ct.nii.gz=HU",

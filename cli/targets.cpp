@@ -174,11 +174,14 @@ void check_surface_targets(const Arguments& a) {
 void write_mesh_targets(Session& session, const TetMesh& as_it_is, std::span<const MeshField> fields) {
   const Arguments& a = session.arguments();
   std::optional<TetMesh> grouped;
-  if (!a.groups.empty() || a.material_bins > 0) grouped = as_it_is;
+  // generate() has added those of the mesh that it made.
+  const std::vector<std::string> groups = a.command == "mesh" ? std::vector<std::string>() : a.options.groups;
+  if (!groups.empty() || a.material_bins > 0) grouped = as_it_is;
   const TetMesh& mesh = grouped ? *grouped : as_it_is;
   std::vector<std::string> group_notes;
-  for (const GroupRule& rule : a.groups)
-    if (std::string note = add_group(*grouped, rule); !note.empty()) group_notes.push_back(std::move(note));
+  for (const std::string& group : groups)
+    if (std::string note = add_group(*grouped, group_rule(group)); !note.empty())
+      group_notes.push_back(std::move(note));
   std::vector<MeshField> all_fields(fields.begin(), fields.end());
   add_asked_fields(session, mesh, all_fields);
   const std::vector<SetMaterial> materials =
@@ -219,8 +222,8 @@ bool takes_shares(const Arguments& a) {
   const auto is_pvtu = [&](std::size_t i) { return format_for(a.meshes[i].string(), options_of(a, i)).name == "pvtu"; };
   for (std::size_t i = 0; i < a.meshes.size(); ++i)
     if (!is_pvtu(i)) return false;
-  return a.writing.parts == 0 && a.page.empty() && a.groups.empty() && !asks_for_fields(a) && !a.writing.ascii &&
-         !a.writing.cells_only;
+  return a.writing.parts == 0 && a.page.empty() && a.options.groups.empty() && !asks_for_fields(a) &&
+         !a.writing.ascii && !a.writing.cells_only;
 }
 
 void write_share_targets(Session& session, const TetMesh& share) {

@@ -167,6 +167,8 @@ int octafront_options_regions_file(octafront_options* options, const char* file)
 int octafront_options_point_sizes_file(octafront_options* options, const char* file);
 /** SizeOptions::named: the size of the region, patch or curve of that name. */
 int octafront_options_size_of(octafront_options* options, const char* name, size_t length, double size);
+/** Options::groups: one more, "NAME=PLACE". */
+int octafront_options_group(octafront_options* options, const char* text, size_t length);
 /** SizeOptions::near: by a name, or where it is null or empty by a point (3). */
 int octafront_options_size_near(octafront_options* options, const char* name, size_t length, const double* point,
                                 double size, double distance);

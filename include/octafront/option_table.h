@@ -44,7 +44,7 @@ struct OptionInfo {
 };
 
 /// Every option that one value sets, in the order of Options. What takes more has no row: SizeOptions::regions,
-/// point_sizes, named, near, mesh, field and callback, ImproveOptions::after_pass.
+/// point_sizes, named, near, mesh, field and callback, ImproveOptions::after_pass, Options::groups.
 const std::vector<OptionInfo>& option_table();
 
 /// The value of an option. Throws OptionError if there is none of that name.

@@ -276,6 +276,9 @@ struct Options {
   /// Names of patches inside (sheets, walls between regions), separated by commas, along which the mesh is opened:
   /// split_patches() of octafront/split.h.
   std::string split;
+  /// Sets that the mesh gets: NAME=PLACE each, as group_rule() of octafront/named_groups.h reads them. Of CAD a place
+  /// may also say what it is like, "holes=cylinders of radius 3": faces, edges or nodes (docs/use/places.md).
+  std::vector<std::string> groups;
   /// Axes along which the body is one cell of a periodic one, of "x", "y" and "z": "xyz", "z", ...; empty: none. The
   /// faces of its bounding box at both ends of such an axis are the same triangles, bit for bit, and
   /// TetMesh::periodic_nodes pairs their nodes. What lies on opposite faces must be the same; where only triangles

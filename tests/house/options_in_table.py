@@ -9,7 +9,7 @@ import pathlib
 import re
 import sys
 
-WITHOUT_A_ROW = {"regions", "point_sizes", "named", "near", "mesh", "field", "callback", "after_pass", "finest"}
+WITHOUT_A_ROW = {"regions", "point_sizes", "named", "near", "mesh", "field", "callback", "after_pass", "finest", "groups"}
 
 
 def fields(header):

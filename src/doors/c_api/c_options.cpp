@@ -1,6 +1,7 @@
 #include <octafront/error.h>
 #include <octafront/generate.h>
 #include <octafront/io.h>
+#include <octafront/named_groups.h>
 #include <octafront/option_table.h>
 #include <octafront/units.h>
 
@@ -171,6 +172,13 @@ int octafront_options_point_sizes_file(octafront_options* options, const char* f
 
 int octafront_options_size_of(octafront_options* options, const char* name, size_t length, double size) {
   return guarded([&] { options->options.size.named.push_back({std::string(name, length), size}); });
+}
+
+int octafront_options_group(octafront_options* options, const char* text, size_t length) {
+  return guarded([&] {
+    group_rule(std::string(text, length));  // refused at once if it is none
+    options->options.groups.emplace_back(text, length);
+  });
 }
 
 int octafront_options_size_near(octafront_options* options, const char* name, size_t length, const double* point,

@@ -9,6 +9,7 @@
 #include "pipeline/inside/fins.h"
 #include "pipeline/stages/adapting.h"
 #include "pipeline/stages/agreement.h"
+#include "pipeline/stages/found_shapes.h"
 #include "pipeline/stages/kept_shape.h"
 #include "pipeline/stages/kept_volumes.h"
 #include "pipeline/stages/measure.h"
@@ -57,6 +58,22 @@ void split(const Finishing& f) {
       stage.note(std::move(note));
   });
   check_result(mesh, nullptr, f.run);
+}
+
+/// In the place of the sets that name_parts() made of what has no name.
+void add_groups(const Finishing& f) {
+  TetMesh& mesh = f.filled.mesh;
+  f.run.stage("groups", [&](const Stage& stage) {
+    const std::vector<std::string>& groups = options_of(f).groups;
+    std::vector<std::string> found;
+    if (f.input.geometry) found = places_without_names(*f.input.geometry, groups, mesh);
+    const auto before = std::ssize(mesh.sets);
+    for (const std::string& group : groups)
+      if (std::string note = add_group(mesh, group_rule(group)); !note.empty()) stage.note(std::move(note));
+    const auto is_found = [&](const NamedSet& set) { return std::ranges::find(found, set.name) != found.end(); };
+    const auto first_new = mesh.sets.begin() + before;
+    mesh.sets.erase(std::remove_if(mesh.sets.begin(), first_new, is_found), first_new);
+  });
 }
 
 /// One thing that may be done to an improved mesh.
@@ -109,6 +126,7 @@ constexpr std::array kFeatures{
     Feature{[](Of f) { return f.fins != nullptr; }, kWantsAll, put_fins_in_place},
     Feature{[](Of f) { return !f.domain.sets.empty(); }, kWantsAll, place_sets},
     Feature{[](Of f) { return !options_of(f).split.empty(); }, kWantsAll, split},
+    Feature{[](Of f) { return !options_of(f).groups.empty(); }, kWantsAll, add_groups},
     // Looked at when all runs that it takes are done.
     Feature{[](Of f) { return requires_something(options_of(f).require); }, kWantsAll, [](Of) {}},
 };

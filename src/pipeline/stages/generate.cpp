@@ -2,6 +2,7 @@
 #include <octafront/generate.h>
 #include <octafront/inside.h>
 #include <octafront/limits.h>
+#include <octafront/named_groups.h>
 #include <octafront/split.h>
 
 #include "base/core/wording.h"
@@ -46,6 +47,12 @@ SizeField choose_sizes(const Prepared& input, const Domain& domain, const Option
   return sizes;
 }
 
+/// Refuses to open, or to make sets of, what the mesh will not have.
+void check_places(const SurfaceMesh& surface, const Options& options) {
+  check_split(surface, names_listed(options.split, surface.patch_names));
+  for (const std::string& group : options.groups) check_group(surface, group_rule(group));
+}
+
 /// `fins`: of the domain's lines and points, which it has as sheets; null: it has none.
 Result generate_once(const Domain& domain, const Options& asked, const RunContext& context, Fins* fins) {
   const Options options = suited(domain, asked);
@@ -54,7 +61,8 @@ Result generate_once(const Domain& domain, const Options& asked, const RunContex
   agree_on(domain.surface, "input", context);
   const Prepared input = prepare(domain, run);
   agree_on(input.surface.mesh(), "repaired input", context);
-  check_split(input.surface.mesh(), names_listed(options.split, input.surface.mesh().patch_names));
+  // Those of CAD were looked at with its names.
+  if (!domain.geometry) check_places(input.surface.mesh(), options);
   const SizeField sizes = choose_sizes(input, domain, asked, run);
   require_expected_elements(run.report.expected_tets);
   agree_on(sizes, input.surface.mesh().points, "size field", context);
@@ -167,6 +175,11 @@ SurfaceResult generate_surface(const Domain& domain, const Options& asked, const
   const SizeField sizes = choose_sizes(input, domain, asked, run);
   Remeshed made = triangulate_to_target(input, sizes, run);
   name_closed_patch(input.closed, input.surface.tree(), made.surface);
+  if (input.geometry) {
+    MeshPatches patches = patches_in_mesh(made.surface, input.geometry);
+    for (std::uint32_t& patch : made.surface.patch) patch = patches.number[patch];
+    made.surface.patch_names = std::move(patches.names);
+  }
   require_elements(static_cast<double>(made.surface.triangles.size()), "the surface");
   run.report.points = made.surface.points.size();
   run.report.boundary_faces = made.surface.triangles.size();
@@ -180,6 +193,7 @@ SizeResult generate_sizes(const Domain& domain, const Options& asked, const RunC
   const Options options = suited(domain, asked);
   Run run(options, context);
   const Prepared input = prepare(domain, run);
+  if (!domain.geometry) check_places(input.surface.mesh(), options);
   SizeField sizes = choose_sizes(input, domain, asked, run);
   if (traits_of(options.method).has_front) sizes = triangulate_to_target(input, sizes, run).sizes;
   require_expected_elements(run.report.expected_tets);

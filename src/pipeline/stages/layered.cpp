@@ -14,6 +14,7 @@
 #include "pipeline/stages/measure.h"
 #include "pipeline/stages/methods.h"
 #include "pipeline/stages/stages.h"
+#include "pipeline/stages/true_shape.h"
 
 #include <algorithm>
 #include <array>
@@ -129,20 +130,21 @@ LayerSummary finished(WallCount count) {
   return s;
 }
 
-/// By region and patch.
-std::vector<LayerSummary> summarize_layers(const SurfaceMesh& whole,
-                                           const std::vector<layers::LayeredRegion>& regions) {
+/// By region and patch, as the mesh will call it.
+std::vector<LayerSummary> summarize_layers(const SurfaceMesh& whole, const std::vector<layers::LayeredRegion>& regions,
+                                           const TrueGeometry* geometry) {
   std::vector<LayerSummary> all;
+  const MeshPatches patches = patches_in_mesh(whole, geometry);
   for (const auto& [wall, columns] : regions) {
     std::map<std::uint32_t, WallCount> of_patch;
     for (std::size_t f = 0; f < wall.is_wall.size(); ++f) {
       if (!wall.is_wall[f]) continue;
-      WallCount& count = of_patch[wall.surface.patch_of(f)];
+      WallCount& count = of_patch[patches.number[wall.surface.patch_of(f)]];
       if (count.summary.faces == 0) count.summary.min_scaled_jacobian = 2, count.summary.asked_count = columns.asked;
       add_face(wall.surface, columns, wall.surface.triangles[f], count);
     }
     for (auto& [patch, count] : of_patch) {
-      count.summary.patch = patch_label(whole.patch_names, patch);
+      count.summary.patch = patch_label(patches.names, patch);
       if (regions.size() > 1) count.summary.region = region_name(whole, wall.region);
       all.push_back(finished(std::move(count)));
     }
@@ -169,7 +171,7 @@ std::vector<std::uint32_t> layered_regions(const SurfaceMesh& whole, const Layer
 }
 
 /// A wall with layers outside is the mesh's own boundary.
-GrownLayers grow_from(SurfaceMesh whole, const SizeField& sizes, Run& run) {
+GrownLayers grow_from(SurfaceMesh whole, const SizeField& sizes, const TrueGeometry* geometry, Run& run) {
   return run.stage("boundary layers", [&](const Stage& stage) {
     const LayersOptions& asked = run.options.layers;
     GrownLayers grown{std::move(whole), {}, {}};
@@ -183,7 +185,7 @@ GrownLayers grow_from(SurfaceMesh whole, const SizeField& sizes, Run& run) {
     }
     if (grown.regions.empty())
       throw OptionError(fmt::format("no wall of \"{}\" bounds a region that layers are asked for in", asked.on));
-    run.report.layers = summarize_layers(grown.whole, grown.regions);
+    run.report.layers = summarize_layers(grown.whole, grown.regions, geometry);
     if (asked.require_coverage) require_coverage(run.report.layers, *asked.require_coverage);
     grown.opened = layers::without_layers(grown.whole, grown.regions);
     return grown;
@@ -251,7 +253,7 @@ std::optional<GrownLayers> grow_layers(const Prepared& input, Remeshed& boundary
   const LayersOptions& asked = run.options.layers;
   if (asked.count == 0 || asked.outside) return {};
   take_sources(input, boundary);
-  GrownLayers grown = grow_from(std::move(boundary.surface), boundary.sizes, run);
+  GrownLayers grown = grow_from(std::move(boundary.surface), boundary.sizes, input.geometry, run);
   boundary.surface = grown.opened.surface;
   boundary.source.clear();
   return grown;
@@ -263,7 +265,7 @@ void add_layers(const Prepared& input, Filled& filled, Run& run) {
   describe_sizes(filled.mesh, filled.boundary.sizes, run.report);
   if (asked.outside) {
     take_sources(input, filled.boundary);
-    filled.layers = grow_from(std::move(filled.boundary.surface), filled.boundary.sizes, run);
+    filled.layers = grow_from(std::move(filled.boundary.surface), filled.boundary.sizes, input.geometry, run);
   }
   GrownLayers& grown = *filled.layers;
   layers::Layered made = layers::with_layers(grown.whole, grown.regions, grown.opened, std::move(filled.mesh));

@@ -4,6 +4,7 @@
 
 #include "pipeline/stages/stages.h"
 
+#include <cstdint>
 #include <string>
 #include <vector>
 
@@ -20,6 +21,14 @@ void place_on_geometry(const Prepared& input, Filled& filled, Run& run);
 /// Patches of the mesh become the named parts that its faces lie in; groups of parts and regions become sets. Parts
 /// without a face of the mesh are named in a note.
 void name_parts(const Prepared& input, Filled& filled, Run& run);
+
+/// What becomes of the patches of a surface in the mesh, where those of one name are one: the number and the names.
+/// Those of no geometry stay as they are.
+struct MeshPatches {
+  std::vector<std::uint32_t> number;  ///< per patch of the surface
+  std::vector<std::string> names;
+};
+MeshPatches patches_in_mesh(const SurfaceMesh& surface, const TrueGeometry* geometry);
 
 /// Enters the true volumes into the report, beside those of the mesh, curved as it is.
 void describe_true_volumes(const Filled& filled, const Domain& domain, Report& report);

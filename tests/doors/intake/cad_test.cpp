@@ -3,10 +3,12 @@
 #include <octafront/cad.h>
 #include <octafront/error.h>
 #include <octafront/generate.h>
+#include <octafront/named_groups.h>
 
 #include "support/test_folder.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <cstdlib>
 #include <numbers>
@@ -66,9 +68,101 @@ TEST_F(CadFiles, TheSamplesSayWhatTheyAre) {
   EXPECT_EQ(info.named_faces, 6u);
   std::vector<std::string> groups;
   for (const CadInfo::Group& group : info.groups) groups.push_back(group.name);
-  EXPECT_EQ(groups, (std::vector<std::string>{"color #d03030", "layer mounting", "solids of color #4078c0",
-                                              "solids of color #b0b8c0", "solids of color #f09020"}));
+  EXPECT_EQ(groups,
+            (std::vector<std::string>{"color #d03030", "layer mounting", "plate|bracket", "solids of color #4078c0",
+                                      "solids of color #b0b8c0", "solids of color #f09020"}));
   EXPECT_EQ(info.groups.back().solids, 2u);
+}
+
+TEST_F(CadFiles, TheSamplesSayWhatTouches) {
+  const CadInfo info = read_cad_info(kAssembly);
+  EXPECT_EQ(info.solids[2].product, "bolt");
+  EXPECT_EQ(info.solids[3].product, "bolt");
+  EXPECT_EQ(info.solids[3].color, "#f09020");
+  std::vector<std::string> contacts;
+  for (const CadInfo::Contact& contact : info.contacts) {
+    contacts.push_back(contact.patch + ": " + contact.shape);
+    EXPECT_EQ(contact.gap, 0);
+    EXPECT_EQ(contact.overlap, 0);
+  }
+  EXPECT_EQ(contacts, (std::vector<std::string>{"seat: plane", "plate|bolt: cylinder of radius 4",
+                                                "plate|bolt#2: cylinder of radius 4",
+                                                "bolt hole 1: cylinder of radius 4", "bracket|bolt: plane",
+                                                "bolt hole 2: cylinder of radius 4", "bracket|bolt#2: plane"}));
+  EXPECT_NEAR(info.contacts[1].area, 2 * std::numbers::pi * 4 * 8, 1e-6);
+  EXPECT_EQ(info.contacts[1].solids, (std::array<std::string, 2>{"plate", "bolt"}));
+}
+
+TEST_F(CadFiles, AMeshHasThePatchesAndCurvesThatTheFileIsSaidToHave) {
+  const CadInfo info = read_cad_info(kAssembly);
+  const PlaceNames made = place_names(meshed(kAssembly, of_size(5)).mesh);
+  std::set<std::string> patches;
+  for (const CadInfo::Patch& patch : info.patches) patches.insert(patch.name);
+  EXPECT_EQ(std::set<std::string>(made.patches.begin(), made.patches.end()), patches);
+  EXPECT_EQ(std::set<std::string>(made.curves.begin(), made.curves.end()),
+            std::set<std::string>(info.edges.begin(), info.edges.end()));
+}
+
+TEST_F(CadFiles, GroupsAreAlsoOfWhatSomethingIsLike) {
+  Options options = of_size(6);
+  options.groups = {"holes=cylinders of radius 4",
+                    "foot=largest plane at z min",
+                    "rims=circles of radius 4 of plate",
+                    "tips=points at z max",
+                    "four=face 4",
+                    "seat of both=bracket|plate",
+                    "low=box:-99,-99,-99,99,99,-7",
+                    "none=spheres"};
+  const Result made = meshed(kAssembly, options);
+  const TetMesh& mesh = made.mesh;
+  const auto members = [&](const char* name) {
+    return set_named(mesh, name) ? set_named(mesh, name)->members.size() : 0;
+  };
+  const auto on_patch = [&](const std::string& name) {
+    std::size_t count = 0;
+    for (const auto* list : {&mesh.patch, &mesh.interface_patch})
+      for (const std::uint32_t p : *list) count += mesh.patch_names[p] == name;
+    return count;
+  };
+  std::size_t in_holes = 0;
+  for (const char* patch : {"bolt hole 1", "bolt hole 2", "plate|bolt", "plate|bolt#2"}) in_holes += on_patch(patch);
+  EXPECT_GE(members("holes"), in_holes);
+  EXPECT_EQ(members("foot"), on_patch("ground"));
+  EXPECT_EQ(members("four"), on_patch("seat"));
+  EXPECT_EQ(members("seat of both"), on_patch("seat"));
+  EXPECT_EQ(members("tips"), 4U);
+  EXPECT_GT(members("low"), 0U);
+  for (const std::uint32_t v : set_named(mesh, "tips")->members) EXPECT_EQ(mesh.points[v].z, 50);
+  const NamedSet* rims = set_named(mesh, "rims");
+  ASSERT_TRUE(rims && rims->kind == NamedSet::Kind::kEdges);
+  double length = 0;
+  for (const std::uint32_t e : rims->members) {
+    const auto [a, b] = mesh.curve_edges[e];
+    length += distance(mesh.points[a], mesh.points[b]);
+  }
+  EXPECT_NEAR(length, 4 * 2 * std::numbers::pi * 4, 0.05 * length) << "two holes, above and below";
+  EXPECT_FALSE(set_named(mesh, "none") || set_named(mesh, "cylinders of radius 4") || set_named(mesh, "face 4"));
+  EXPECT_TRUE(set_named(mesh, "plate|bracket")) << "that the file has anyway";
+  const auto says_so = [](const StageReport& stage) {
+    return stage.name == "groups" && stage.notes.size() == 1 && stage.notes[0].find("\"none\"") != std::string::npos;
+  };
+  EXPECT_TRUE(std::ranges::any_of(made.report.stages, says_so));
+  options.groups = {"g=patches:seat,no such patch"};
+  EXPECT_THROW(meshed(kAssembly, options), OptionError);
+}
+
+TEST_F(CadFiles, SizesAndOpeningsAreAlsoOfWhatSomethingIsLike) {
+  Options options = of_size(8);
+  options.size.named = {{"cylinders of radius 4 of plate", 1}};
+  options.size.near = {{"points at z max", {}, 1, 6}};
+  options.split = "bolt|plate";
+  const TetMesh mesh = meshed(kAssembly, options).mesh;
+  EXPECT_GT(faces_of_patch(mesh, "bolt|plate_plus"), 600U) << "of both bolts";
+  EXPECT_EQ(faces_of_patch(mesh, "bolt|plate_plus"), faces_of_patch(mesh, "bolt|plate_minus"));
+  options.split = "planes at z min";
+  EXPECT_THROW(meshed(kAssembly, options), OptionError) << "none of them lies inside";
+  options.split.clear(), options.size.named = {{"cylinders of radius 7", 2}};
+  EXPECT_THROW(meshed(kAssembly, options), OptionError);
 }
 
 TEST_F(CadFiles, TheSamplesAreMadeAnew) {
