@@ -237,6 +237,7 @@ FURTHER = {
     "crop": "Sequence[Sequence[int | None]] | None = None", "resample": "float | Sequence[float] | None = None",
     "box": "str | npt.ArrayLike = ''",
     "regions": "Places | None = None", "point_sizes": "npt.ArrayLike | Path | None = None",
+    "group": "Mapping[str, str] | None = None",
     "size_of": "Mapping[str, float] | None = None", 
     "size_near": "Mapping[str | tuple[float, float, float], tuple[float, float]] | None = None",
     "size_field": "SizeField | Path | tuple[npt.ArrayLike, npt.ArrayLike, npt.ArrayLike] | None = None",

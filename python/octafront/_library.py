@@ -72,6 +72,7 @@ _PROTOTYPES = {
     "options_new": (_handle,), "options_free": (None, _handle), "options_set": (_whole, _handle, _text),
     "options_regions": (_whole, _handle, _pointer, _size), "options_point_sizes": (_whole, _handle, _pointer, _size),
     "options_regions_file": (_whole, _handle, _text), "options_point_sizes_file": (_whole, _handle, _text),
+    "options_group": (_whole, _handle, _text, _size),
     "options_size_of": (_whole, _handle, _text, _size, _number),
     "options_size_near": (_whole, _handle, _text, _size, _pointer, _number, _number),
     "options_sizes_file": (_whole, _handle, _text),

@@ -48,6 +48,9 @@ _FURTHER = [(name, "mesh surface size", text) for name, text in _OF_INTAKE] + [
     ("size_near", "mesh surface size adapt",
      "{place: (edge length, distance)} in a region, on a patch, along a curve, by their names, or at a point (x, y, z): "
      "rising from there to nothing asked at the distance"),
+    ("group", "mesh",
+     "{name: place}: sets that the mesh gets, of what lies at a place: a name, \"box:0,0,0,1,1,1\", or of CAD what it is like, "
+     "\"cylinders of radius 3\""),
     ("size_field", "mesh surface size adapt",
      "Sizes on a mesh: (points, tetrahedra or triangles, sizes at points or of elements), or a file \"old.vtu:h\" with "
      "the name of its field. Or all sizes, alone: a SizeField, or a file that one wrote"),
@@ -132,6 +135,9 @@ class Settings:
         for name, size in dict(given.pop("size_of", {})).items():
             raw = bytes_of(name)
             demand("options_size_of", self.options, raw, len(raw), float(size))
+        for name, place in dict(given.pop("group", {})).items():
+            raw = bytes_of(f"{name}={place}")
+            demand("options_group", self.options, raw, len(raw))
         for name in ("regions", "point_sizes"):
             if name in given:
                 self._set_places(name, given.pop(name))

@@ -14,6 +14,7 @@
 #include <filesystem>
 #include <fstream>
 #include <iterator>
+#include <set>
 
 #include <fmt/core.h>
 #include <gtest/gtest.h>
@@ -260,6 +261,28 @@ TEST_P(EveryFormat, KeepsWhatItHolds) {
       if (set.kind == Kind::kNodes || set.kind == Kind::kElements) {
         EXPECT_NE(std::find(back.sets.begin(), back.sets.end(), set), back.sets.end()) << set.name;
       }
+  }
+}
+
+TEST_P(EveryFormat, KeepsNamesApartThatDifferAtTheirEnds) {
+  const auto all = known_formats();
+  const auto info = std::find_if(all.begin(), all.end(), [](const FormatInfo& i) { return i.name == GetParam(); });
+  TetMesh mesh = testing::rich_mesh(2);
+  // As those of contacts in assemblies: longer than MED's 80 bytes, with letters of two.
+  const std::string common = "Träger links unten, geschweißt|Träger rechts oben, geschweißt, mit Steg und Flansch, ";
+  for (auto* names : {&mesh.patch_names, &mesh.curve_names})
+    for (std::size_t n = 0; n < names->size(); ++n) (*names)[n] = common + std::to_string(n) + "#2";
+  const TemporaryFolder folder;
+  write_mesh(folder / file_name(*info), mesh, {}, {.format = GetParam()});
+  const TetMesh back = read_mesh(folder / file_name(*info));
+  const auto different = [](const std::vector<std::string>& names) {
+    return std::set<std::string>(names.begin(), names.end()).size();
+  };
+  if (info->holds.patches == Keeps::kNames) {
+    EXPECT_EQ(different(back.patch_names), mesh.patch_names.size());
+  }
+  if (info->holds.curves == Keeps::kNames) {
+    EXPECT_EQ(different(back.curve_names), mesh.curve_names.size());
   }
 }
 
