@@ -280,10 +280,44 @@ class CommandLine(unittest.TestCase):
         self.assertIn('there is no patch "none"', done.stderr)
         self.assertFalse((self.dir / "a.vtu").exists())
 
-    def test_parts_for_structures_hear_of_second_order(self):
-        program = pathlib.Path(OCTAFRONT).parent / "../cad/octafront-cad"
-        if not program.exists():
+    def needs_cad(self):
+        if not (pathlib.Path(OCTAFRONT).parent / "../cad/octafront-cad").exists():
             self.skipTest("no program that reads CAD")
+
+    def test_info_of_an_assembly_lists_parts_and_contacts(self):
+        self.needs_cad()
+        report = self.dir / "info.json"
+        said = self.run_cli("info", SAMPLES / "assembly.step").stdout
+        self.assertIn('part "bolt", 2 times, "bolt", "bolt#2": each volume 1434.43', said)
+        self.assertIn('patch "ground": plane, area', said)
+        self.assertIn('contact of "plate" and "bolt": cylinder of radius 4, area 201.062, patch "plate|bolt"', said)
+        self.run_cli("info", SAMPLES / "assembly.step", "--json", report)
+        info = json.loads(report.read_text())
+        self.assertEqual({c["patch"] for c in info["contacts"]},
+                         {"seat", "plate|bolt", "plate|bolt#2", "bracket|bolt", "bracket|bolt#2", "bolt hole 1", "bolt hole 2"})
+        self.assertEqual([p["name"] for p in info["cad_patches"]], info["places"]["patches"])
+        self.assertEqual([s.get("product") for s in info["solids"]], ["plate", "bracket", "bolt", "bolt"])
+
+    def test_one_name_is_one_patch_of_every_option(self):
+        self.needs_cad()
+        part, mesh, report = self.dir / "part.step", self.dir / "part.vtu", self.dir / "part.json"
+        text = (SAMPLES / "bracket.step").read_text()
+        part.write_text(text.replace("'bolt hole 2'", "'hole'").replace("'bolt hole 1'", "'hole'"))
+        made = self.run_cli("mesh", part, "-o", mesh, "--size", 8, "--size-of", "hole=1", "--on", "hole", "--layers", 2,
+                            "--first", ".1", "--group", "both=hole", "--group", "low=planes at z min", "--json", report).stdout
+        walls = json.loads(report.read_text())["layers"]
+        self.assertEqual([wall["patch"] for wall in walls], ["hole"])
+        groups = {(g["origin"], g["name"]): g["size"]
+                  for g in json.loads(self.run_cli("check", mesh, "--json", "-").stdout)["groups"]}
+        self.assertGreater(groups["patch", "hole"], 200, made)
+        self.assertEqual(groups["faces", "both"], groups["patch", "hole"])
+        self.assertGreater(groups["faces", "low"], 0)
+        self.assertNotIn(("faces", "planes at z min"), groups)
+        refused = self.run_cli("mesh", part, "-o", mesh, "--size", 8, "--size-of", "spheres=2", status=2)
+        self.assertIn('nothing is called "spheres", and there is nothing of that kind', refused.stderr)
+
+    def test_parts_for_structures_hear_of_second_order(self):
+        self.needs_cad()
         for ending, order, says in ((".inp", 1, True), (".inp", 2, False), (".vtu", 1, False)):
             done = self.run_cli("mesh", SAMPLES / "bracket.step", "--size", 12, "--order", order, "-o", self.dir / f"part{ending}")
             self.assertEqual("elements of first order" in done.stdout + done.stderr, says, (ending, order))

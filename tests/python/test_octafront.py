@@ -544,6 +544,17 @@ class Cad(BesideTheLine):
         for region in mesh.report["regions"]:
             self.assertAlmostEqual(region["volume"] / region["true_volume"], 1, delta=.03)  # what chords cut off
 
+    def test_groups_by_what_something_is_like(self):
+        mesh = octafront.mesh(SAMPLES / "assembly.step", size=6, group={"foot": "largest plane at z min", "tips": "points at z max"})
+        kind, members = mesh.sets["foot"]
+        self.assertEqual(kind, "faces")
+        self.assertEqual(len(members), np.sum(mesh.patches == mesh.names["patches"].index("ground")))
+        kind, members = mesh.sets["tips"]
+        self.assertEqual(kind, "nodes")
+        np.testing.assert_array_equal(mesh.points[members][:, 2], 50)
+        with self.assertRaises(octafront.OptionError):
+            octafront.mesh(SAMPLES / "assembly.step", size=6, group={"foot": ""})
+
     def test_a_surface_that_was_read_keeps_its_geometry(self):
         surface = octafront.read(SAMPLES / "bracket.step")
         mesh = octafront.mesh(surface, size=6)
