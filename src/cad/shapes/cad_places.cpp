@@ -103,8 +103,8 @@ FoundShapes CadPlaces::find(const std::string& place) const {
 std::vector<char> CadPlaces::faces_of(const std::string& name) const {
   if (name.empty()) return is_there_;
   std::vector<char> is_of(is_there_.size(), 0);
-  for (const std::uint32_t f : faces(name)) is_of[f] = is_there_[f];
   std::vector<std::uint32_t> solids = named_so(solid_names(model_), name);
+  for (const std::uint32_t f : solids.empty() ? faces(name) : named_so(names_, name)) is_of[f] = is_there_[f];
   for (const LabelGroup& group : label_groups(model_))
     if (group.name == name) solids.insert(solids.end(), group.solids.begin(), group.solids.end());
   for (std::uint32_t f = 0; f < is_of.size(); ++f)

@@ -22,12 +22,14 @@ void place_on_geometry(const Prepared& input, Filled& filled, Run& run);
 /// without a face of the mesh are named in a note.
 void name_parts(const Prepared& input, Filled& filled, Run& run);
 
-/// What becomes of the patches of a surface in the mesh, where those of one name are one: the number and the names.
-/// Those of no geometry stay as they are.
+/// Patches of a mesh, where those of one name are one.
 struct MeshPatches {
-  std::vector<std::uint32_t> number;  ///< per patch of the surface
+  std::vector<std::uint32_t> number;  ///< per part, or patch of a surface
   std::vector<std::string> names;
 };
+/// What becomes of the parts.
+MeshPatches patches_of_parts(const TrueGeometry& geometry);
+/// What becomes of the patches of a surface of this geometry, each by the largest of its parts; of none they stay.
 MeshPatches patches_in_mesh(const SurfaceMesh& surface, const TrueGeometry* geometry);
 
 /// Enters the true volumes into the report, beside those of the mesh, curved as it is.
