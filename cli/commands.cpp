@@ -16,8 +16,11 @@
 #include "targets.h"
 #include "text.h"
 
+#include <algorithm>
 #include <filesystem>
 #include <optional>
+#include <string>
+#include <vector>
 
 #include <fmt/core.h>
 
@@ -191,6 +194,12 @@ std::filesystem::path file_at_fault(const Arguments& a, const SurfaceMesh& surfa
   return is_surface ? a.surface : a.input;
 }
 
+/// They stand with the file that has them, too.
+std::vector<std::string> notes_on_groups(const Report& report) {
+  const auto groups = std::ranges::find(report.stages, "groups", &StageReport::name);
+  return groups == report.stages.end() ? std::vector<std::string>() : groups->notes;
+}
+
 }  // namespace
 
 void run_mesh(Session& session) {
@@ -210,7 +219,7 @@ void run_mesh(Session& session) {
   tell_ranks(session, result.report);
   if (result.is_share) write_share_targets(session, result.mesh);
   if (!session.is_first()) return;
-  if (!result.is_share) write_mesh_targets(session, result.mesh);
+  if (!result.is_share) write_mesh_targets(session, result.mesh, {}, notes_on_groups(result.report));
   recommend_second_order(a, result.report);
   session.tell(result.report);
   tell_worst(session, worst);

@@ -171,7 +171,8 @@ void check_surface_targets(const Arguments& a) {
   }
 }
 
-void write_mesh_targets(Session& session, const TetMesh& as_it_is, std::span<const MeshField> fields) {
+void write_mesh_targets(Session& session, const TetMesh& as_it_is, std::span<const MeshField> fields,
+                        std::vector<std::string> told) {
   const Arguments& a = session.arguments();
   std::optional<TetMesh> grouped;
   // generate() has added those of the mesh that it made.
@@ -194,9 +195,11 @@ void write_mesh_targets(Session& session, const TetMesh& as_it_is, std::span<con
     std::vector<std::string> notes = write_one(a.meshes[i], mesh, all_fields, options, session.context());
     session.warn("writing", group_notes);
     session.say_notes("writing", notes);
-    notes.insert(notes.begin(), group_notes.begin(), group_notes.end());
+    for (std::vector<std::string>* first : {&group_notes, &told}) {
+      notes.insert(notes.begin(), first->begin(), first->end());
+      first->clear();
+    }
     all.push_back({{"file", a.meshes[i].string()}, {"notes", notes}});
-    group_notes.clear();
   }
   session.found({{"output", all[0]}});
   if (all.size() > 1) session.found({{"outputs", all}});

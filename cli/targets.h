@@ -8,15 +8,18 @@
 
 #include <span>
 #include <string>
+#include <vector>
 
 namespace octafront::cli {
 
 /// Refuses outputs of meshes that cannot be written, before any work. Throws OptionError, OutputError.
 void check_mesh_targets(const Arguments& arguments);
 
-/// Adds the groups that were asked for, writes the mesh to all outputs, with fields to those that hold some, and says
-/// what was lost on the way.
-void write_mesh_targets(Session& session, const TetMesh& mesh, std::span<const MeshField> fields = {});
+/// Adds the groups that were asked for, but to a mesh that generate() made with them; writes the mesh to all outputs,
+/// with fields to those that hold some, and says what was lost on the way. `told`: notes on it that stand with the
+/// first output.
+void write_mesh_targets(Session& session, const TetMesh& mesh, std::span<const MeshField> fields = {},
+                        std::vector<std::string> told = {});
 
 /// Whether ranks write their shares of a mesh by themselves: all outputs are .pvtu, and nothing asks for more.
 bool takes_shares(const Arguments& arguments);
