@@ -1,7 +1,10 @@
 #include <octafront/domain.h>
 #include <octafront/error.h>
 #include <octafront/named_groups.h>
+#include <octafront/split.h>
 
+#include "base/mesh/complex.h"
+#include "base/mesh/complex_patches.h"
 #include "base/mesh/curve_names.h"
 #include "base/places/places.h"
 #include "base/places/shape_place.h"
@@ -29,10 +32,18 @@ struct Meant {
   std::vector<Vec3> points;
 };
 
+/// The surface as it is meshed: where solids could not be given common faces each pair has patches of its own.
+SurfaceMesh divided(SurfaceMesh surface) {
+  if (is_complex(surface)) divide_by_sides(surface);
+  return surface;
+}
+
 /// Refuses a group by patches that the mesh will not have.
-void check_group_of(const TrueGeometry& geometry, const GroupRule& rule) {
+void check_group_of(const Domain& domain, const GroupRule& rule) {
   SurfaceMesh patches;
-  patches.patch_names = patches_of_parts(geometry).names;
+  patches.patch_names = patches_of_parts(*domain.geometry).names;
+  const std::vector<std::string> further = divided(domain.surface).patch_names;
+  patches.patch_names.insert(patches.patch_names.end(), further.begin(), further.end());
   patches.triangles.resize(patches.patch_names.size());
   for (std::uint32_t p = 0; p < patches.triangles.size(); ++p) patches.patch.push_back(p);
   check_group(patches, rule);
@@ -72,14 +83,17 @@ class PlacesOfGeometry {
   }
 
   /// What the patches of the mesh will be called that lie inside at a place. Throws OptionError if none does.
-  std::vector<std::string> patches_inside(std::string_view option, const std::string& place) const {
+  std::vector<std::string> patches_inside(const std::string& place) const {
     const auto [number, patches] = patches_of_parts(geometry_);
     const std::vector<char> is_inside = patches_with_two_sides(number, patches.size());
     if (!patches_called(patches, is_inside, place).empty()) return {place};
     std::vector<std::uint32_t> found;
     for (const std::uint32_t part : geometry_.find(place).parts)
       if (is_inside[number[part]]) found.push_back(number[part]);
-    if (found.empty()) patches_called(option, patches, is_inside, place);  // says which there are
+    if (found.empty()) {
+      check_split(divided(surface_), {place});  // says which there are
+      return {place};
+    }
     std::vector<std::string> names;
     for (const std::uint32_t p : found) add(names, alone(patches, patches[p]));
     return names;
@@ -158,8 +172,8 @@ Options options_for_geometry(const Domain& domain, Options options) {
   take_sizes(places, options.size);
   those(options.layers.on, [&](const std::string& place) { return places.meant("on", place).names; });
   those(options.layers.in, [&](const std::string& place) { return places.meant("in", place).names; });
-  those(options.split, [&](const std::string& place) { return places.patches_inside("split", place); });
-  for (const std::string& group : options.groups) check_group_of(*domain.geometry, group_rule(group));
+  those(options.split, [&](const std::string& place) { return places.patches_inside(place); });
+  for (const std::string& group : options.groups) check_group_of(domain, group_rule(group));
   return options;
 }
 
