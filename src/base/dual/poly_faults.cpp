@@ -1,0 +1,62 @@
+#include "base/dual/poly_faults.h"
+
+#include "base/core/parallel.h"
+#include "base/dual/poly_measures.h"
+
+#include <algorithm>
+
+namespace octafront::dual {
+namespace {
+
+constexpr std::size_t kCellsAtOnce = 2048;
+/// The cosine of 65 degrees: OpenFOAM calls faces severely non-orthogonal from 70 on.
+constexpr double kLeastCosine = 0.4226182617406994;
+
+class FaultFinder {
+ public:
+  explicit FaultFinder(const PolyMesh& mesh) : mesh_(mesh), faces_(faces_of_cells(mesh)), middles_(mesh.cells()) {
+    parallel_for(mesh.cells(),
+                 [&](std::size_t c) { middles_[c] = middle_of_cell(mesh, static_cast<std::uint32_t>(c), faces_[c]); });
+  }
+
+  bool is_unsound(std::uint32_t c) const {
+    return !is_closed(mesh_, c, faces_[c]) || !(volume_of(mesh_, c, faces_[c]) > 0);
+  }
+  bool is_faulty(std::uint32_t c) const {
+    return std::ranges::any_of(faces_[c], [&](std::uint32_t f) { return is_faulty_face(f); });
+  }
+
+ private:
+  bool is_faulty_face(std::size_t f) const {
+    const FaceMeasure face = measure(mesh_, f);
+    if (dot(face.area, face.middle - middles_[mesh_.owner[f]]) <= 0) return true;
+    if (f >= mesh_.inner_faces()) return false;
+    const Vec3 across = middles_[mesh_.neighbour[f]] - middles_[mesh_.owner[f]];
+    return dot(face.area, middles_[mesh_.neighbour[f]] - face.middle) <= 0 ||
+           dot(normalized(face.area), normalized(across)) < kLeastCosine;
+  }
+
+  const PolyMesh& mesh_;
+  Groups<> faces_;
+  std::vector<Vec3> middles_;
+};
+
+}  // namespace
+
+PolyFaults faults_of(const PolyMesh& mesh) {
+  const FaultFinder finder(mesh);
+  const auto those = [&](const auto& test) {
+    return parallel_collect<std::uint32_t>(mesh.cells(), kCellsAtOnce,
+                                           [&](std::size_t begin, std::size_t end, std::vector<std::uint32_t>& out) {
+                                             for (auto c = static_cast<std::uint32_t>(begin); c < end; ++c)
+                                               if (test(c)) out.push_back(c);
+                                           });
+  };
+  PolyFaults faults;
+  const std::vector<std::uint32_t> unsound = those([&](std::uint32_t c) { return finder.is_unsound(c); });
+  faults.unsound = unsound.size();
+  faults.cells = those([&](std::uint32_t c) { return finder.is_faulty(c) || std::ranges::binary_search(unsound, c); });
+  return faults;
+}
+
+}  // namespace octafront::dual
