@@ -58,6 +58,15 @@ void FoamFiles::list(const std::string& name, std::string_view type, std::size_t
   });
 }
 
+void FoamFiles::points(std::size_t count, const std::function<Vec3(std::size_t)>& place_of) const {
+  list("points", "vectorField", count, [&](TextWriter& out) {
+    for (std::size_t i = 0; i < count; ++i) {
+      const Vec3 p = place_of(i);
+      out << '(' << p.x << ' ' << p.y << ' ' << p.z << ")\n";
+    }
+  });
+}
+
 void put_cell_zone(TextWriter& out, const std::string& name, std::span<const std::uint32_t> cells) {
   out.line("{}\n{{\n    type cellZone;\n    cellLabels List<label> {}\n(", name, cells.size());
   for (const std::uint32_t c : cells) out << c << '\n';
@@ -70,6 +79,34 @@ void put_face_zone(TextWriter& out, const std::string& name, std::span<const Foa
   out.line(")\n;\n    flipMap List<bool> {}\n(", faces.size());
   for (const FoamZoneFace& f : faces) out << (f.is_flipped ? "1\n" : "0\n");
   out << ")\n;\n}\n";
+}
+
+/// A cell may be in one zone only: sets are none.
+void put_cell_zones(const FoamFiles& files, const MeshParts& mesh, std::span<const std::string> names,
+                    std::map<std::uint32_t, std::vector<std::uint32_t>>& cells_of_region) {
+  const auto regions = mesh.parts(Part::Origin::kRegion);
+  files.file("cellZones", "regIOobject", [&](TextWriter& out) {
+    out.line("{}\n(", regions.size());
+    for (const Part& region : regions)
+      put_cell_zone(out, names[static_cast<std::size_t>(&region - mesh.parts().data())],
+                    cells_of_region[region.number]);
+    out << ")\n";
+  });
+}
+
+void put_face_zones(const FoamFiles& files, const MeshParts& mesh, std::span<const std::string> names,
+                    std::map<std::uint32_t, std::vector<FoamZoneFace>>& faces_of_patch) {
+  std::vector<const Part*> inside;
+  for (const Part& patch : mesh.parts(Part::Origin::kPatch))
+    if (patch.members.back() >= mesh.mesh().boundary.size()) inside.push_back(&patch);
+  files.file("faceZones", "regIOobject", [&](TextWriter& out) {
+    out.line("{}\n(", inside.size());
+    for (const Part* patch : inside) {
+      std::ranges::stable_sort(faces_of_patch[patch->number], {}, &FoamZoneFace::label_in_whole);
+      put_face_zone(out, names[static_cast<std::size_t>(patch - mesh.parts().data())], faces_of_patch[patch->number]);
+    }
+    out << ")\n";
+  });
 }
 
 void put_patch(TextWriter& out, const std::string& name, const MeshParts& mesh, const Part& patch, std::size_t faces,

@@ -3,6 +3,7 @@
 // OpenFOAM's files: their heads, zones, patches, and the faces between cells.
 
 #include "formats/containers/text_writer.h"
+#include "formats/parts/legal_names.h"
 #include "formats/parts/mesh_output.h"
 #include "formats/parts/mesh_parts.h"
 #include "formats/parts/mixed_cells.h"
@@ -15,9 +16,13 @@
 #include <span>
 #include <string>
 #include <string_view>
+#include <utility>
 #include <vector>
 
 namespace octafront::io {
+
+inline constexpr NameRules kFoamNames{.also = "_-."};
+inline constexpr const char* kFoamLocation = "constant/polyMesh";
 
 /// The files of a polyMesh folder.
 struct FoamFiles {
@@ -29,7 +34,32 @@ struct FoamFiles {
   /// A list of so many values in lines of their own.
   void list(const std::string& name, std::string_view type, std::size_t count,
             const std::function<void(TextWriter&)>& write) const;
+  void points(std::size_t count, const std::function<Vec3(std::size_t)>& place_of) const;
+  /// The files of faces. for_each_face(visit) calls visit(points, owner, neighbour) in order, those of the boundary
+  /// with kNone behind the `inner` other ones.
+  template <class ForEachFace>
+  void faces(std::size_t count, std::size_t inner, const ForEachFace& for_each_face) const;
 };
+
+template <class ForEachFace>
+void FoamFiles::faces(std::size_t count, std::size_t inner, const ForEachFace& for_each_face) const {
+  list("faces", "faceList", count, [&](TextWriter& out) {
+    for_each_face([&](const auto& points, std::uint32_t, std::uint32_t) {
+      out << std::uint64_t{points.size()};
+      char before = '(';
+      for (const VertexIndex p : points) out << std::exchange(before, ' ') << p;
+      out << ")\n";
+    });
+  });
+  list("owner", "labelList", count, [&](TextWriter& out) {
+    for_each_face([&](const auto&, std::uint32_t owner, std::uint32_t) { out << owner << '\n'; });
+  });
+  list("neighbour", "labelList", inner, [&](TextWriter& out) {
+    for_each_face([&](const auto&, std::uint32_t, std::uint32_t neighbour) {
+      if (neighbour != kNone) out << neighbour << '\n';
+    });
+  });
+}
 
 struct FoamZoneFace {
   std::size_t label;
@@ -37,7 +67,13 @@ struct FoamZoneFace {
   std::uint64_t label_in_whole;
 };
 void put_cell_zone(TextWriter& out, const std::string& name, std::span<const std::uint32_t> cells);
+/// Zones of all regions, by their legal names.
+void put_cell_zones(const FoamFiles& files, const MeshParts& mesh, std::span<const std::string> names,
+                    std::map<std::uint32_t, std::vector<std::uint32_t>>& cells_of_region);
 void put_face_zone(TextWriter& out, const std::string& name, std::span<const FoamZoneFace> faces);
+/// Zones of the patches that have faces inside, each in the order of the whole.
+void put_face_zones(const FoamFiles& files, const MeshParts& mesh, std::span<const std::string> names,
+                    std::map<std::uint32_t, std::vector<FoamZoneFace>>& faces_of_patch);
 
 /// An entry of `boundary`; `name` is the legal one.
 void put_patch(TextWriter& out, const std::string& name, const MeshParts& mesh, const Part& patch, std::size_t faces,

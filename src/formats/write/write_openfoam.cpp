@@ -133,7 +133,7 @@ struct FoamWhole {
       : mesh(of),
         cells(mixed),
         faces(of, mixed),
-        names(legal_names(out, of, {.also = "_-."}, std::array{Part::Origin::kRegion, Part::Origin::kPatch})) {
+        names(legal_names(out, of, kFoamNames, std::array{Part::Origin::kRegion, Part::Origin::kPatch})) {
     for (const Part& patch : of.parts(Part::Origin::kPatch))
       if (const std::size_t size = faces.outside(patch).size(); size > 0) patches.push_back({&patch, size});
   }
@@ -180,27 +180,14 @@ class FoamMesh {
   }
 
   void write(const FoamFiles& files) const {
-    const std::size_t points = piece_ == nullptr ? mesh_.points() : points_.size();
-    files.list("points", "vectorField", points, [&](TextWriter& out) {
-      for (std::size_t v = 0; v < points; ++v) {
-        const Vec3 p = mesh_.mesh().points[piece_ == nullptr ? v : points_[v]];
-        out << '(' << p.x << ' ' << p.y << ' ' << p.z << ")\n";
-      }
-    });
-    files.list("faces", "faceList", all_faces(), [&](TextWriter& out) {
+    files.points(piece_ == nullptr ? mesh_.points() : points_.size(),
+                 [&](std::size_t v) { return mesh_.mesh().points[piece_ == nullptr ? v : points_[v]]; });
+    files.faces(all_faces(), inner_, [&](const auto& visit) {
+      std::array<VertexIndex, 4> own{};
       for_each_face([&](const Face& face) {
         const auto nodes = face.corners();
-        out << std::uint64_t{nodes.size()};
-        for (std::size_t i = 0; i < nodes.size(); ++i)
-          out << (i == 0 ? '(' : ' ') << (piece_ == nullptr ? nodes[i] : own_point_[nodes[i]]);
-        out << ")\n";
-      });
-    });
-    files.list("owner", "labelList", all_faces(),
-               [&](TextWriter& out) { for_each_face([&](const Face& face) { out << face.owner << '\n'; }); });
-    files.list("neighbour", "labelList", inner_, [&](TextWriter& out) {
-      for_each_face([&](const Face& face) {
-        if (face.neighbour != kNone) out << face.neighbour << '\n';
+        for (std::size_t i = 0; i < nodes.size(); ++i) own[i] = piece_ == nullptr ? nodes[i] : own_point_[nodes[i]];
+        visit(std::span(own).first(nodes.size()), face.owner, face.neighbour);
       });
     });
     write_boundary(files);
@@ -327,17 +314,11 @@ class FoamMesh {
     });
   }
 
-  /// A cell may be in one zone only: sets are none.
   void write_cell_zones(const FoamFiles& files) const {
     std::map<std::uint32_t, std::vector<std::uint32_t>> cells;
     for (std::uint32_t c = 0, count = 0; c < cells_.cells(); ++c)
       if (piece_ == nullptr || number_[c] != kNone) cells[mesh_.region_of(cells_.first_tet(c))].push_back(count++);
-    const auto regions = whole_.mesh.parts(Part::Origin::kRegion);
-    files.file("cellZones", "regIOobject", [&](TextWriter& out) {
-      out.line("{}\n(", regions.size());
-      for (const Part& region : regions) put_cell_zone(out, whole_.name(region), cells[region.number]);
-      out << ")\n";
-    });
+    put_cell_zones(files, whole_.mesh, whole_.names, cells);
   }
 
   void write_face_zones(const FoamFiles& files) const {
@@ -350,17 +331,7 @@ class FoamMesh {
         zones[patch].push_back({place, face.is_turned, face.label});
       ++place;
     });
-    std::vector<const Part*> inside;
-    for (const Part& patch : whole_.mesh.parts(Part::Origin::kPatch))
-      if (patch.members.back() >= whole_.mesh.mesh().boundary.size()) inside.push_back(&patch);
-    files.file("faceZones", "regIOobject", [&](TextWriter& out) {
-      out.line("{}\n(", inside.size());
-      for (const Part* patch : inside) {
-        std::ranges::stable_sort(zones[patch->number], {}, &FoamZoneFace::label_in_whole);
-        put_face_zone(out, whole_.name(*patch), zones[patch->number]);
-      }
-      out << ")\n";
-    });
+    put_face_zones(files, whole_.mesh, whole_.names, zones);
   }
 
   void write_addressing(const FoamFiles& files) const {
@@ -397,8 +368,6 @@ class FoamMesh {
   std::map<std::uint32_t, std::vector<Face>> of_neighbours_;
 };
 
-constexpr const char* kLocation = "constant/polyMesh";
-
 /// The case that a mesh belongs to: of CASE/constant/polyMesh and of CASE/polyMesh.
 fs::path case_of(const fs::path& target) {
   const fs::path folder = target.parent_path();
@@ -410,16 +379,16 @@ fs::path case_of(const fs::path& target) {
 void write_openfoam(MeshOutput& out, const MeshParts& mesh) {
   const MixedCells cells(mesh);
   const FoamWhole whole(out, mesh, cells);
-  FoamMesh(whole).write({out.folder(), kLocation, out.context()});
+  FoamMesh(whole).write({out.folder(), kFoamLocation, out.context()});
 }
 
 void write_openfoam_parts(MeshOutput& out, Pieces& pieces) {
   FoamWhole whole(out, pieces.whole(), pieces.cells());
   whole.faces.number();
   for (std::uint32_t k = 0; k < pieces.count(); ++k) {
-    const fs::path folder = case_of(out.target()) / fmt::format("processor{}", k) / kLocation;
+    const fs::path folder = case_of(out.target()) / fmt::format("processor{}", k) / kFoamLocation;
     const Piece piece = pieces.piece(k);
-    FoamMesh(whole, piece).write({out.folder(folder), kLocation, out.context()});
+    FoamMesh(whole, piece).write({out.folder(folder), kFoamLocation, out.context()});
   }
 }
 

@@ -11,6 +11,7 @@
 #include "formats/containers/vtu_arrays.h"
 #include "formats/parts/vtk_cells.h"
 #include "formats/write/vtk_pieces.h"
+#include "formats/write/vtu_head.h"
 #include "formats/write/writers.h"
 
 #include <limits>
@@ -34,24 +35,11 @@ class VtuWriter {
         as_text_(as_text) {}
 
   void write() {
-    out_.line(
-        "<?xml version=\"1.0\"?>\n"
-        "<VTKFile type=\"UnstructuredGrid\" version=\"1.0\" byte_order=\"LittleEndian\" header_type=\"UInt64\"{}>\n"
-        "  <UnstructuredGrid>",
-        as_text_ ? "" : " compressor=\"vtkZLibDataCompressor\"");
-    out_ << "    <FieldData>\n";
-    for (const auto& [name, number] : piece_ == nullptr ? cells_.names() : piece_->whole.names)
-      out_.line("      <DataArray type=\"Int32\" Name=\"{}\" NumberOfTuples=\"1\" format=\"ascii\">{}</DataArray>",
-                escaped(name), number);
-    out_ << "    </FieldData>\n";
-    out_ << "    <Piece NumberOfPoints=\"" << std::uint64_t{parts_.points()} << "\" NumberOfCells=\"" << cells_.size()
-         << "\">\n";
+    begin_vtu(out_, as_text_, piece_ == nullptr ? cells_.names() : piece_->whole.names, parts_.points(), cells_.size());
     declare_points();
     declare_cells();
     declare_data();
-    out_ << "    </Piece>\n  </UnstructuredGrid>\n";
-    arrays_.write_data();
-    out_ << "</VTKFile>\n";
+    end_vtu(out_, arrays_);
   }
 
  private:
