@@ -48,6 +48,8 @@ export interface WriteOptions {
   ascii?: boolean;
   /** Tetrahedra alone. */
   cells_only?: boolean;
+  /** As polyhedra, a cell for each vertex, where the format has them. */
+  polyhedral?: boolean;
 }
 
 export interface WrittenFile {

@@ -83,8 +83,11 @@ struct WriteOptions {
   bool ascii = false;       ///< as text; formats that are always text are so anyway
   bool cells_only = false;  ///< the tetrahedra alone, with their regions and sets, and sets of nodes: no faces and
                             ///< edges, which some programs refuse beside tetrahedra
-  bool cohesive = false;    ///< elements of no height (COH3D6) between the two sides of faces that were split: Abaqus
-  std::string beams = {};   ///< names of curves, separated by commas, that are beams, too (B31, B32): Abaqus
+  /// The dual: a polyhedron for each vertex (poly_mesh.h), of formats that hold them. Values at vertices are those of
+  /// its cells.
+  bool polyhedral = false;
+  bool cohesive = false;   ///< elements of no height (COH3D6) between the two sides of faces that were split: Abaqus
+  std::string beams = {};  ///< names of curves, separated by commas, that are beams, too (B31, B32): Abaqus
   std::vector<SetMaterial> materials = {};  ///< of sets of the mesh. Abaqus: of "E" *ELASTIC and *SOLID SECTION, else a
                                             ///< comment
   double poissons_ratio = 0.3;              ///< of these materials
@@ -204,6 +207,7 @@ struct FormatHolds {
   bool fields = false;             ///< MeshField
   bool surfaces_alone = false;     ///< a mesh of triangles without tetrahedra
   bool parts = false;              ///< WriteOptions::parts
+  bool polyhedra = false;          ///< WriteOptions::polyhedral
 };
 
 /// What is known of a file format, for help texts and --format.

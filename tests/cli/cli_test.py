@@ -5,6 +5,7 @@ import pathlib
 import os
 import pty
 import random
+import re
 import resource
 import signal
 import struct
@@ -1101,6 +1102,28 @@ class CommandLine(unittest.TestCase):
         self.run_cli("convert", mesh, "-o", self.dir, "--format", "openfoam", status=5)
         for bad in ("held", "=box:1,2,3,4,5,6", "a=box:1,2,3", "a=cone:1,2", "a=sphere:0,0,0,-1", "a=box:1,2,3,4,5,x"):
             self.run_cli("convert", mesh, "-o", self.dir / "d.msh", "--group", bad, status=2)
+
+    def test_polyhedra(self):
+        """The dual of bodies with layers and of several regions, in the formats that have it."""
+        bracket, mesh = SAMPLES / "bracket.stl", self.dir / "a.vtu"
+        cells = lambda folder: 1 + max(int(n) for n in re.findall(r"^\d+$", (folder / "owner").read_text().split("\n(\n")[1], re.M))
+        for case in ("tets", "dual", "b", "c", "x"):
+            (self.dir / case).mkdir()
+        self.run_cli("mesh", bracket, "-o", mesh, "--size", 8, "--layers", 2, "--first-part", .1, "--layers-outside")
+        self.run_cli("convert", mesh, "-o", self.dir / "tets/polyMesh")
+        done = self.run_cli("convert", mesh, "-o", self.dir / "dual/polyMesh", "--polyhedral")
+        self.assertNotIn("wedges", done.stdout)
+        self.assertLess(cells(self.dir / "dual/polyMesh"), .8 * cells(self.dir / "tets/polyMesh"))
+        zones = [(self.dir / f"{case}/polyMesh/cellZones").read_text() for case in ("tets", "dual")]
+        names = [re.findall(r"(\S+)\n\{", zone[zone.index("(") :]) for zone in zones]
+        self.assertEqual(names[0], names[1])
+        self.run_cli("mesh", bracket, "-o", self.dir / "b/polyMesh", "--size", 8, "--polyhedral", "--threads", 1)
+        self.run_cli("mesh", bracket, "-o", self.dir / "c/polyMesh", "--size", 8, "--polyhedral", "--threads", 2)
+        for file in ("points", "faces", "owner", "neighbour", "boundary"):
+            self.assertEqual(*[(self.dir / case / "polyMesh" / file).read_bytes() for case in "bc"])
+        said = self.run_cli("mesh", bracket, "-o", self.dir / "x.msh", "--polyhedral", status=2).stderr
+        self.assertRegex(said, r"Gmsh MSH 4.1 has no polyhedra here; --polyhedral is for vtu, openfoam")
+        self.run_cli("convert", mesh, "-o", self.dir / "x/polyMesh", "--polyhedral", "--parts", 2, status=2)
 
     def test_places_are_named_alike_by_every_option(self):
         """Patches without names, by the names that the file written gives them."""

@@ -221,6 +221,13 @@ void write_fields(const std::string& folder, const TetMesh& mesh) {
       fields_on(mesh));
 }
 
+/// As polyhedra with fields, for poly_judges.py.
+void write_polyhedra(const std::string& folder, const TetMesh& mesh) {
+  write_those(
+      folder + "_polyhedra", mesh, {.polyhedral = true}, [](const FormatInfo& info) { return info.holds.polyhedra; },
+      fields_on(mesh));
+}
+
 /// In five parts, for parts_judges.py.
 void write_parts(const std::string& folder, const TetMesh& mesh) {
   write_those(folder + "_parts", mesh, {.parts = 5}, [](const FormatInfo& info) { return info.holds.parts; });
@@ -244,6 +251,8 @@ int main(int argc, char** argv) {
   write_fields(folder + "/mixed_linear", mixed);
   write_fields(folder + "/mixed_second",
                octafront::testing::bent_quadratically(octafront::testing::with_mid_nodes(mixed)));
+  write_polyhedra(folder + "/linear", linear);
+  write_polyhedra(folder + "/mixed_linear", mixed);
   const auto write_mixed = [&](const std::string& name, const TetMesh& mesh, bool FormatHolds::*kind) {
     write_those(folder + name, mesh, {}, [&](const FormatInfo& info) { return info.holds.*kind; });
     write_those(folder + name + "_text", mesh, {.ascii = true},

@@ -28,6 +28,11 @@ const std::vector<Row<WriteOptions>>& write_rows() {
                         "beside them"),
           [](auto& o) -> auto& { return o.cells_only; }),
       write_row(
+          about_writing("polyhedral",
+                        "As polyhedra, a cell for each vertex: the dual of the tetrahedra, layers stay prisms "
+                        "(OpenFOAM, CGNS, VTU)"),
+          [](auto& o) -> auto& { return o.polyhedral; }),
+      write_row(
           about_writing("cohesive",
                         "Cohesive elements of no height between the two sides of what was split (Abaqus: COH3D6)"),
           [](auto& o) -> auto& { return o.cohesive; }),

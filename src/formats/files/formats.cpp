@@ -14,11 +14,13 @@ constexpr bool kYes = true, kNo = false;
 #ifdef OCTAFRONT_WITH_HDF5
 constexpr auto kWriteMed = write_med, kWriteXdmf = write_xdmf, kWriteCgns = write_cgns, kWriteVtkHdf = write_vtkhdf;
 constexpr void (*kWriteVtkHdfParts)(MeshOutput&, Pieces&) = write_vtkhdf_parts;
+constexpr void (*kWriteCgnsPolyhedra)(MeshOutput&, const MeshParts&, const PolyMesh&) = write_cgns_polyhedra;
 constexpr auto kReadMed = read_med, kReadXdmf = read_xdmf;
 #else
 constexpr void (*kWriteMed)(MeshOutput&, const MeshParts&) = nullptr;
 constexpr auto kWriteXdmf = kWriteMed, kWriteCgns = kWriteMed, kWriteVtkHdf = kWriteMed;
 constexpr void (*kWriteVtkHdfParts)(MeshOutput&, Pieces&) = nullptr;
+constexpr void (*kWriteCgnsPolyhedra)(MeshOutput&, const MeshParts&, const PolyMesh&) = nullptr;
 RawMesh refuse_hdf5(const Input& input) {
   input.fail(
       "needs HDF5, which this octafront was built without: build it with libhdf5-dev installed, or convert the file");
@@ -140,6 +142,11 @@ constexpr Format with_parts(Format format, void (*write)(MeshOutput&, Pieces&),
   format.check_parts = check;
   return format;
 }
+constexpr Format with_polyhedra(Format format, void (*write)(MeshOutput&, const MeshParts&, const PolyMesh&)) {
+  format.info.holds.polyhedra = write != nullptr;
+  format.write_polyhedra = write;
+  return format;
+}
 constexpr Format of_several_files(Format format) {
   format.info.one_file = false;
   return format;
@@ -167,11 +174,12 @@ constexpr std::array kFormats{
                       told_freesurfer, read_freesurfer)),
     read_only(surface("poly", "TetGen PLC", ".poly .smesh",
                       "facets, with markers as patches, regions and holes; read only", nullptr, told_poly, read_poly)),
-    read(with_fields(with_wedges(or_text(
-             mesh("vtu", "VTU", ".vtu", binary(kAll),
-                  "VTK unstructured grid, compressed or text: numbers, names and sets as arrays; beta per element",
-                  write_vtu)))),
-         told_vtu, read_vtu),
+    with_polyhedra(read(with_fields(with_wedges(or_text(mesh("vtu", "VTU", ".vtu", binary(kAll),
+                                                             "VTK unstructured grid, compressed or text: numbers, "
+                                                             "names and sets as arrays; beta per element",
+                                                             write_vtu)))),
+                        told_vtu, read_vtu),
+                   write_vtu_polyhedra),
     read(with_parts(with_fields(with_wedges(or_text(mesh("msh", "Gmsh MSH 4.1", ".msh", binary(kAll),
                                                          "binary or text: all as physical groups", write_msh)))),
                     write_msh_parts),
@@ -211,11 +219,13 @@ constexpr std::array kFormats{
       Format format = of_several_files(mesh("openfoam", "OpenFOAM polyMesh", "", kOpenFoam,
                                             "a folder, named polyMesh: patches, cellZones, faceZones", write_openfoam));
       format.is_folder = true;
-      return with_parts(with_linear_wedges(format), write_openfoam_parts, check_openfoam_parts);
+      return with_polyhedra(with_parts(with_linear_wedges(format), write_openfoam_parts, check_openfoam_parts),
+                            write_openfoam_polyhedra);
     }(),
-    with_fields(with_wedges(mesh("cgns", "CGNS", ".cgns", binary(without_edges(without_sets(kAll))),
-                                 "sections and boundary conditions; needs HDF5", kWriteCgns)),
-                false),
+    with_polyhedra(with_fields(with_wedges(mesh("cgns", "CGNS", ".cgns", binary(without_edges(without_sets(kAll))),
+                                                "sections and boundary conditions; needs HDF5", kWriteCgns)),
+                               false),
+                   kWriteCgnsPolyhedra),
     read(with_fields(with_wedges(or_text(
              mesh("vtk", "legacy VTK", ".vtk", binary(kAll), "as VTU, binary or text, uncompressed", write_vtk)))),
          told_vtk, read_vtk),

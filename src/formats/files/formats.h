@@ -4,6 +4,7 @@
 // and write it. To add one: a source in formats/read, one in formats/write, and a row.
 
 #include <octafront/io.h>
+#include <octafront/poly_mesh.h>
 
 #include "formats/containers/atomic_file.h"
 #include "formats/containers/file_head.h"
@@ -26,6 +27,7 @@ struct Format {
   void (*write_mesh)(MeshOutput&, const MeshParts&) = nullptr;       ///< null: it cannot, or not in this build
   bool is_folder = false;
   void (*write_parts)(MeshOutput&, Pieces&) = nullptr;  ///< null: it cannot; alone: always in parts
+  void (*write_polyhedra)(MeshOutput&, const MeshParts&, const PolyMesh&) = nullptr;  ///< null: it cannot
   /// Instead of looking whether the one file, or the folder, can be written.
   void (*check_parts)(const std::filesystem::path&, std::uint32_t parts) = nullptr;
   Told (*told)(const FileHead&) = nullptr;  ///< null: another row tells

@@ -1,6 +1,7 @@
 #include <octafront/error.h>
 #include <octafront/field_files.h>
 #include <octafront/io.h>
+#include <octafront/poly_mesh.h>
 
 #include "base/core/thread_limit.h"
 #include "base/mesh/renumber.h"
@@ -19,26 +20,30 @@ namespace octafront {
 
 namespace {
 
-std::string all_names() {
+template <class Can>
+std::string names_that(const Can& can) {
   std::string names;
   for (const io::Format& format : io::formats())
-    if (format.info.writes_mesh) names += (names.empty() ? "" : ", ") + std::string(format.info.name);
+    if (can(format)) names += (names.empty() ? "" : ", ") + std::string(format.info.name);
   return names;
+}
+
+std::string all_names() {
+  return names_that([](const io::Format& format) { return format.info.writes_mesh; });
 }
 
 std::string names_with_text() {
-  std::string names;
-  for (const io::Format& format : io::formats())
-    if (format.info.also_text || (format.info.writes_mesh && !format.info.holds.binary))
-      names += (names.empty() ? "" : ", ") + std::string(format.info.name);
-  return names;
+  return names_that([](const io::Format& format) {
+    return format.info.also_text || (format.info.writes_mesh && !format.info.holds.binary);
+  });
 }
 
 std::string names_with_parts() {
-  std::string names;
-  for (const io::Format& format : io::formats())
-    if (format.write_parts != nullptr) names += (names.empty() ? "" : ", ") + std::string(format.info.name);
-  return names;
+  return names_that([](const io::Format& format) { return format.write_parts != nullptr; });
+}
+
+std::string names_with_polyhedra() {
+  return names_that([](const io::Format& format) { return format.write_polyhedra != nullptr; });
 }
 
 /// Whether the mesh is written in parts, by options or because the format knows nothing else.
@@ -58,9 +63,21 @@ void check_parts(const io::Format& format, const WriteOptions& options) {
         "this octafront was built without METIS; build it with libmetis-dev installed, or divide along the curve");
 }
 
+/// Throws OptionError for what the format cannot do of polyhedra, and what they cannot be.
+void check_polyhedral(const io::Format& format, const WriteOptions& options) {
+  if (!options.polyhedral) return;
+  if (format.write_polyhedra == nullptr)
+    throw OptionError(
+        fmt::format("{} has no polyhedra here; `polyhedral` is for {}", format.info.title, names_with_polyhedra()));
+  if (options.parts > 0)
+    throw OptionError("polyhedra are not written in parts; let the solver's own program divide them");
+  if (options.cells_only) throw OptionError("polyhedra are made of faces, which `cells_only` leaves out");
+}
+
 /// Throws OptionError for what the format cannot do.
 void check_options(const io::Format& format, const WriteOptions& options) {
   check_parts(format, options);
+  check_polyhedral(format, options);
   const bool is_of_surfaces = format.write_mesh == nullptr && format.write_parts == nullptr;
   if (options.ascii && (is_of_surfaces || format.info.holds.binary) && !format.info.also_text)
     throw OptionError(
@@ -96,12 +113,24 @@ void require_fitting(const std::string& file, const TetMesh& mesh, std::span<con
   }
 }
 
-/// Those of points that keep their numbers, and of elements that are not divided as parts of wedges.
-std::vector<MeshField> fields_that_fit(std::span<const MeshField> fields, bool points_move, bool wedges_in_parts) {
+/// Those of points that keep their numbers, and of elements that stay what they are.
+std::vector<MeshField> fields_that_fit(std::span<const MeshField> fields, bool points_move, bool elements_change) {
   std::vector<MeshField> fitting;
   for (const MeshField& field : fields)
-    if (field.of_elements ? !wedges_in_parts : !points_move) fitting.push_back(field);
+    if (field.of_elements ? !elements_change : !points_move) fitting.push_back(field);
   return fitting;
+}
+
+/// What a format holds of a mesh that becomes polyhedra: regions, patches, and values at vertices.
+FormatInfo info_for(const FormatInfo& info, const WriteOptions& options, std::string& title) {
+  if (!options.polyhedral) return info;
+  FormatInfo left = info;
+  title = fmt::format("{} of polyhedra", info.title);
+  left.title = title;
+  left.holds.curves = Keeps::kNothing;
+  left.holds.node_sets = left.holds.edge_sets = left.holds.face_sets = left.holds.element_sets = false;
+  left.holds.second_order = false;
+  return left;
 }
 
 /// Of a format of surfaces only.
@@ -148,7 +177,9 @@ std::vector<std::string> write_mesh(const std::string& file, const TetMesh& mesh
   require_fitting(file, mesh, fields);
   const ThreadLimit limit(context.threads);
   const io::Format& format = mesh_format(file, options.format);
-  const FormatHolds& holds = format.info.holds;
+  std::string title;
+  const FormatInfo info = info_for(format.info, options, title);
+  const FormatHolds& holds = info.holds;
   const bool is_wide = holds.second_order && mesh.is_second_order() ? holds.curved_wide_cells : holds.wide_cells;
   const bool is_curved = is_wide && holds.second_order;
   const io::WithoutDiagonals without = is_curved ? io::without_diagonals(mesh) : io::WithoutDiagonals{};
@@ -158,17 +189,21 @@ std::vector<std::string> write_mesh(const std::string& file, const TetMesh& mesh
                                                                   .last_points = without.diagonals});
   if (in_parts(format, options) && mesh.tets.empty())
     throw OptionError(fmt::format("{}: a mesh without volume elements is not written in parts", file));
+  if (options.polyhedral && mesh.tets.empty())
+    throw OptionError(fmt::format("{}: a mesh without volume elements has no polyhedra", file));
   const bool wedges_in_parts = in_parts(format, options) && !parts.wide_cells().empty();
   const std::size_t given = fields.size();
   std::vector<MeshField> fitting;
-  if (without.mesh || wedges_in_parts) {
-    fitting = fields_that_fit(fields, without.mesh.has_value(), wedges_in_parts);
+  if (without.mesh || wedges_in_parts || options.polyhedral) {
+    fitting = fields_that_fit(fields, without.mesh.has_value(), wedges_in_parts || options.polyhedral);
     fields = fitting;
   }
   io::MeshOutput out(file, context, options, fields);
   if (fields.size() < given)
-    out.note("wedges of second order, or in parts, are written without the fields that do not fit them");
-  out.note(io::loss_of_fields(format.info, fields));
+    out.note(options.polyhedral
+                 ? "polyhedra are written without the values of elements: a cell is made of many"
+                 : "wedges of second order, or in parts, are written without the fields that do not fit them");
+  out.note(io::loss_of_fields(info, fields));
   if (format.write_surface != nullptr) {
     format.write_surface(out.file(), boundary_surface(mesh));
     if (!mesh.tets.empty())
@@ -176,10 +211,12 @@ std::vector<std::string> write_mesh(const std::string& file, const TetMesh& mesh
           fmt::format("{} holds the boundary alone: {} tetrahedra are left out", format.info.title, mesh.tets.size()));
   } else {
     out.note(parts.note_on_names());
-    for (std::string& note : io::losses(format.info, parts)) out.note(std::move(note));
+    for (std::string& note : io::losses(info, parts)) out.note(std::move(note));
     if ((options.cohesive || !options.beams.empty()) && !holds.cohesive)
       out.note(fmt::format("{} is given no cohesive elements and beams: they are for Abaqus", format.info.title));
-    if (in_parts(format, options)) {
+    if (options.polyhedral) {
+      format.write_polyhedra(out, parts, dual_mesh(parts.mesh(), context));
+    } else if (in_parts(format, options)) {
       io::Pieces pieces(parts, io::divide(parts.mesh(), std::max(options.parts, 1U), options.partitioner), fields);
       format.write_parts(out, pieces);
     } else {

@@ -2,6 +2,7 @@
 
 // formats/write: writers, one source per format. They take a surface or MeshParts, and throw OutputError.
 
+#include <octafront/poly_mesh.h>
 #include <octafront/tet_mesh.h>
 
 #include "formats/containers/atomic_file.h"
@@ -55,10 +56,15 @@ std::string piece_name(std::string_view stem, std::uint32_t piece, std::string_v
 void check_pvtu_target(const std::filesystem::path& target, std::uint32_t parts);
 void check_openfoam_parts(const std::filesystem::path& target, std::uint32_t parts);
 
+// The same as polyhedra; parts tell of regions and patches.
+void write_vtu_polyhedra(MeshOutput& out, const MeshParts& parts, const PolyMesh& mesh);
+void write_openfoam_polyhedra(MeshOutput& out, const MeshParts& parts, const PolyMesh& mesh);
+
 // With HDF5 only.
 void write_med(MeshOutput& out, const MeshParts& mesh);
 void write_xdmf(MeshOutput& out, const MeshParts& mesh);
 void write_cgns(MeshOutput& out, const MeshParts& mesh);
+void write_cgns_polyhedra(MeshOutput& out, const MeshParts& parts, const PolyMesh& mesh);
 void write_vtkhdf(MeshOutput& out, const MeshParts& mesh);
 void write_vtkhdf_parts(MeshOutput& out, Pieces& pieces);
 

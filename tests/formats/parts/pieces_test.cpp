@@ -253,7 +253,7 @@ TEST(FilesInParts, KnowNoTime) {
   // HDF5 would write down the second in which a dataset was made.
   const auto file = [](const std::string& name) {
     const TemporaryFolder folder;
-    write_mesh(folder / name, testing::rich_mesh(2), {}, {});
+    write_mesh(folder / name, testing::rich_mesh(2));
     return all_files(folder / "");
   };
   const std::vector<FormatInfo> all = known_formats();
