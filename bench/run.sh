@@ -99,5 +99,5 @@ cmake --build --preset release --target octafront_cli octafront_evaluate octafro
 [[ $1 != layers_* ]] || [ -d models/flows ] || bench/models/get-flows.sh build/release/cli/octafront
 python=python3
 [ "$1" != repair ] && [ "$1" != known_answers ] && [ "$1" != damage ] && [[ $1 != images* ]] || python=/usr/bin/python3  # Debian's, with its NumPy
-[[ $1 != layers_* ]] && [ "$1" != inside ] && [ "$1" != periodic ] && [ "$1" != answers ] && [ "$1" != four_shells ] || python=/usr/bin/python3
+[[ $1 != layers_* ]] && [ "$1" != polyhedral ] && [ "$1" != inside ] && [ "$1" != periodic ] && [ "$1" != answers ] && [ "$1" != four_shells ] || python=/usr/bin/python3
 exec "$python" -m "bench.run.$1" build/release "${@:2}"
