@@ -34,7 +34,7 @@ constexpr double kMostTriangles = 0.3;
 
 /// A draft is made finer so often where it is wrong at fewer places than this part of its triangles, or this many:
 /// another round costs more.
-constexpr int kMostRefinements = 3;
+constexpr int kDraftRefinements = 3;
 constexpr double kFewPart = 1e-3;
 constexpr std::size_t kFew = 20;
 
@@ -121,7 +121,7 @@ class Remesher {
     work_.progress(0.9);
     Attempt now = judged(draft);
     if (effort == Effort::kFull)
-      for (int k = 0; k < kMostRefinements && refine(now, draft); ++k) now = judged(draft);
+      for (int k = 0; k < kDraftRefinements && refine(now, draft); ++k) now = judged(draft);
     return now;
   }
 
