@@ -114,17 +114,7 @@ class Star {
 
   /// The bound on the other side of the material at an edge of this one.
   std::uint32_t across_edge(const Bound& from, VertexIndex w) const {
-    TetIndex t = from.face / 4;
-    HalfFace h = from.face;
-    while (true) {
-      // The other face at the edge lies opposite the corner that this one has besides.
-      const Triangle face = corners_of(primal_.mesh.tets, h);
-      const VertexIndex besides = third(face, vertex_, w);
-      h = primal_.corner_at(t, besides);
-      if (beyond(h) == kNone) return bound_at(h);
-      h = primal_.across[h];
-      t = h / 4;
-    }
+    return bound_at(primal_.end_across(from.face, vertex_, w, [&](HalfFace h) { return beyond(h) == kNone; }));
   }
 
   Vec3 normal(HalfFace h) const {

@@ -2,7 +2,7 @@
 
 #include "base/geometry/measures.h"
 
-#include <algorithm>
+#include <cmath>
 
 namespace octafront::dual {
 namespace {
@@ -11,17 +11,6 @@ namespace {
 constexpr double kOfTangentPlanes = 0.5;
 /// A part of the face's size. Surfaces that a mesh resolves ask for half of it; more is noise, and would turn cells.
 constexpr double kMostLift = 0.1;
-
-/// The wall on the other side of the material at an edge of this one.
-HalfFace next_wall(const Primal& primal, HalfFace wall, VertexIndex v, VertexIndex w) {
-  const std::vector<Tet>& tets = primal.mesh.tets;
-  HalfFace h = wall;
-  while (true) {
-    h = primal.corner_at(h / 4, third(corners_of(tets, h), v, w));
-    if (primal.is_wall(h)) return h;
-    h = primal.across[h];
-  }
-}
 
 Vec3 double_area_normal_of(const Primal& primal, HalfFace h) {
   const auto& [a, b, c] = corners_of(primal.mesh.tets, h);
@@ -37,7 +26,7 @@ Vec3 normal_at(const Primal& primal, const DualPoints& points, HalfFace wall, Ve
     if (w == v) continue;
     HalfFace h = wall;
     while (points.middle(v, w) != Middle::kCorner) {
-      h = next_wall(primal, h, v, w);
+      h = primal.end_across(h, v, w, [&](HalfFace end) { return primal.is_wall(end); });
       if (h == wall) return normalized(sum);
       sum += double_area_normal_of(primal, h);
       w = third(corners_of(primal.mesh.tets, h), v, w);

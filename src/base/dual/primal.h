@@ -58,6 +58,16 @@ class Primal {
   std::uint32_t patch_of(HalfFace h) const;
   HalfFace lower_side(HalfFace h) const { return std::min(h, across[h]); }
   bool is_curve(VertexIndex a, VertexIndex b) const;
+  /// From a half-face at an edge through the material there, to the next one where it ends: ends(half-face).
+  template <class Ends>
+  HalfFace end_across(HalfFace h, VertexIndex v, VertexIndex w, const Ends& ends) const {
+    while (true) {
+      // The other face at the edge lies opposite the corner that this one has besides.
+      h = corner_at(h / 4, third(corners_of(mesh.tets, h), v, w));
+      if (ends(h)) return h;
+      h = across[h];
+    }
+  }
 
   /// Calls visit(spokes, is_closed) for the tetrahedra at an edge, given by their corners at its first end, chain by
   /// chain: from boundary to boundary, or all around.

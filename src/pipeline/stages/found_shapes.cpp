@@ -17,11 +17,8 @@ namespace {
 
 double squared_distance_to(const FoundLine& line, Vec3 p) {
   double least = std::numeric_limits<double>::infinity();
-  for (std::size_t k = 0; k + 1 < line.points.size(); ++k) {
-    const Vec3 a = line.points[k], d = line.points[k + 1] - a;
-    const double l = dot(d, d), t = l > 0 ? std::clamp(dot(p - a, d) / l, 0.0, 1.0) : 0;
-    least = std::min(least, squared_length(a + t * d - p));
-  }
+  for (std::size_t k = 0; k + 1 < line.points.size(); ++k)
+    least = std::min(least, squared_distance(p, closest_point_on_segment(p, line.points[k], line.points[k + 1])));
   return least;
 }
 

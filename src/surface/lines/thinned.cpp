@@ -22,6 +22,12 @@ std::vector<Vec3> thinned(const SizeField& sizes, const std::vector<Vec3>& place
   return kept;
 }
 
+std::vector<PointSize> smaller_at(const std::vector<Vec3>& places, double part, const SizeField& sizes) {
+  std::vector<PointSize> wanted;
+  for (const Vec3 p : thinned(sizes, places)) wanted.push_back({p, part * sizes.at(p)});
+  return wanted;
+}
+
 std::vector<PointSize> smallest_ones(std::vector<PointSize> places) {
   if (places.empty()) return places;
   std::sort(places.begin(), places.end(), [](const PointSize& a, const PointSize& b) {

@@ -9,9 +9,7 @@
 namespace octafront::surface {
 
 void RoundSizes::cap(const std::vector<Vec3>& places, double factor) {
-  std::vector<PointSize> wanted;
-  for (const Vec3 p : thinned(now_, places)) wanted.push_back({p, factor * now_.at(p)});
-  add(std::move(wanted), {.reach = CapShape{}.reach / factor});
+  add(smaller_at(places, factor, now_), {.reach = CapShape{}.reach / factor});
 }
 
 void RoundSizes::add(std::vector<PointSize> wanted, const CapShape& shape) {

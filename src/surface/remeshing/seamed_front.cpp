@@ -150,9 +150,8 @@ class SeamedFront : public FrontKind {
 
   /// Seams stay as they are.
   bool refine_at(const std::vector<Vec3>& places, Draft& draft) override {
-    std::vector<PointSize> wanted;
-    for (const Vec3 p : thinned(draft.sizes, places)) wanted.push_back({p, kCap * draft.sizes.at(p)});
-    draft.sizes = capped_at(draft.sizes, wanted, work_.stage.context(), {.gradation = kSteep});
+    draft.sizes =
+        capped_at(draft.sizes, smaller_at(places, kCap, draft.sizes), work_.stage.context(), {.gradation = kSteep});
     divide_long(draft);
     divide_repeated(draft);
     clear(draft);
