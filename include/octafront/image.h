@@ -162,16 +162,19 @@ struct CleanOptions {
   /// Where two regions, or one and the outside, touch in a spot of less than this area (in the squared unit of the
   /// file), or in a strip a voxel or two wide, a region beside it comes between them.
   double contacts = 0;
-  bool any() const { return islands > 0 || holes > 0 || closing > 0 || contacts > 0; }
+  /// Islands and holes below these volumes as well, but the smallest first, and only while a region neither loses nor
+  /// gets more than 1 % so: specks that elements of the size wanted cannot have, as long as they are noise.
+  double specks = 0, speck_holes = 0;
+  bool any() const { return islands > 0 || holes > 0 || closing > 0 || contacts > 0 || specks > 0 || speck_holes > 0; }
 };
 
-/// Closes, removes islands, fills holes, clears small contacts, in this order; voxels that share a face hang together.
-/// Closing takes voxels of the outside only: those that are in reach of a region from all sides (the morphological
-/// closing with an octahedron of `closing` voxels), the first region's where several are. Islands and holes go to the
-/// region, or the outside, that has most faces with them. The largest piece of each region stays whatever its size: no
-/// region is lost. A contact is cleared by the layer of voxels on one of its sides, if that shortens the lines where
-/// three regions meet, cuts no region in two there, and all together change none by more than 1 % or a voxel. What was
-/// done is in the notes of the result. The same bits on any number of threads.
+/// Closes, removes islands, fills holes, removes specks, clears small contacts, in this order; voxels that share a face
+/// hang together. Closing takes voxels of the outside only: those that are in reach of a region from all sides (the
+/// morphological closing with an octahedron of `closing` voxels), the first region's where several are. Islands and
+/// holes go to the region, or the outside, that has most faces with them. The largest piece of each region stays
+/// whatever its size: no region is lost. A contact is cleared by the layer of voxels on one of its sides, if that
+/// shortens the lines where three regions meet, cuts no region in two there, and all together change none by more than
+/// 1 % or a voxel. What was done is in the notes of the result. The same bits on any number of threads.
 LabelImage cleaned(const LabelImage& image, const CleanOptions& options, const RunContext& context = no_context());
 
 /// A disc on the skin.

@@ -329,6 +329,25 @@ class Images(unittest.TestCase):
         plain = self.write("plain.nii", nifti(size, [100 * v for v in boxes(size, (1, (2, 2, 2), (12, 10, 8)))], 4, "h", (2, 1, 1)))
         self.assertAlmostEqual(clean / self.volumes(plain, *bands)["a"], 1, 4)
 
+    def test_specks_below_an_element_go_or_are_meshed_soundly(self):
+        size = (24, 24, 24)
+        image = self.write("specks.nii", nifti(size, boxes(size, (1, (2, 2, 2), (22, 22, 16)), (2, (9, 9, 9), (11, 12, 10)), (2, (3, 3, 17), (21, 21, 22)))))
+        mesh, report = self.dir / "specks.vtu", self.dir / "specks.json"
+        def run(*options):
+            done = self.run_cli("mesh", image, "--size", 4, "-o", mesh, "--json", report, *options)
+            return done.stdout + done.stderr, json.loads(report.read_text())
+        said, clean = run()
+        self.assertIn('of "label 2" 1 (6 voxels)', said)
+        said, kept = run("--islands", 0)
+        self.assertNotIn("specks below", said)
+        for made in (clean, kept):
+            self.assertGreater(made["quality"]["dihedral_min_degrees"], 5)
+        volume = {made["regions"][1]["name"]: made["regions"][1]["volume"] for made in (kept,)}
+        self.assertAlmostEqual(volume["label 2"] / (6 + 18 * 18 * 5), 1, 2)
+        # What is more than 1 % of its label is no speck.
+        few = self.write("few.nii", nifti(size, boxes(size, (1, (2, 2, 2), (22, 22, 16)), (2, (9, 9, 9), (11, 12, 10)), (2, (3, 3, 17), (9, 9, 20)))))
+        self.assertNotIn("specks below", self.run_cli("mesh", few, "--size", 4, "-o", mesh).stdout)
+
     def test_content_tells_what_a_file_is(self):
         data = self.two_boxes().read_bytes()
         for name in ("boxes", "boxes.dat", "boxes.stl"):

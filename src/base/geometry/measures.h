@@ -38,6 +38,8 @@ inline Vec3 unit_normal(Vec3 a, Vec3 b, Vec3 c) {
   return normalized(double_area_normal(a, b, c));
 }
 
+/// The volume of a regular tetrahedron over the cube of its edge.
+inline constexpr double kRegularTet = 0.11785113;
 /// Edge of an equilateral triangle of area 1.
 inline constexpr double kEdgeOfUnitArea = 1.5196713713031851;
 

@@ -144,14 +144,16 @@ std::vector<Row<IntakeOptions>> image_rows() {
                        "Pieces of regions below this volume go to what surrounds them; each region keeps its largest")
               .takes("V")
               .from(0)
+              .without("an element of the size, if one is given, and 1 % of a region")
               .also("check"),
-          [](auto& o) -> auto& { return o.image.regions.clean.islands; }),
+          [](auto& o) -> auto& { return o.image.islands; }),
       intake_row(
           about_intake("holes", kGroup, "Pieces of the outside below this volume, not at the image's edge, are filled")
               .takes("V")
               .from(0)
+              .without("as `islands`")
               .also("check"),
-          [](auto& o) -> auto& { return o.image.regions.clean.holes; }),
+          [](auto& o) -> auto& { return o.image.holes; }),
       intake_row(
           about_intake("contacts", kGroup,
                        "Where labels touch in spots below this area, or in strips of a voxel or two, a label beside "

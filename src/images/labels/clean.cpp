@@ -22,6 +22,11 @@ namespace {
 
 using image::Runs;
 
+/// Of a region, what specks may take from it or add to it.
+constexpr double kMostInSpecks = 0.01;
+/// So many are named in a note; others are counted.
+constexpr std::size_t kMostListed = 3;
+
 /// The volume of a voxel in each slice: slices reach to the middle between them and their neighbours.
 std::vector<double> volumes_of_voxels(const ImageGrid& grid) {
   const double step = std::abs(dot(cross(grid.axes[0], grid.axes[1]), grid.axes[2]));
@@ -76,8 +81,32 @@ class Pieces {
   }
 
   void choose_holes(double below) {
-    for (std::uint32_t p = 0; p < all_.size(); ++p)
-      given_[p] = all_[p].region == LabelImage::kNoRegion && !all_[p].at_edge && all_[p].volume < below;
+    for (std::uint32_t p = 0; p < all_.size(); ++p) given_[p] = is_hole(p, below);
+  }
+
+  /// The smallest first, while no region loses or gets more than a small part.
+  void choose_specks(double islands, double holes) {
+    std::vector<std::uint32_t> specks;
+    std::vector<double> most(image_.labels.size(), 0.0);
+    for (const Piece& piece : all_)
+      if (piece.region != LabelImage::kNoRegion) most[piece.region] += kMostInSpecks * piece.volume;
+    choose_islands(islands);
+    for (std::uint32_t p = 0; p < all_.size(); ++p) {
+      given_[p] = given_[p] || is_hole(p, holes);
+      if (given_[p]) specks.push_back(p);
+    }
+    const std::vector<std::uint16_t> heir = heirs();
+    std::ranges::stable_sort(specks, {}, [&](std::uint32_t p) { return all_[p].volume; });
+    std::vector<double> lost(most.size(), 0.0), got(most.size(), 0.0);
+    for (const std::uint32_t p : specks) {
+      const double volume = all_[p].volume;
+      const std::uint16_t from = all_[p].region, to = heir[p];
+      given_[p] = (from == LabelImage::kNoRegion || lost[from] + volume <= most[from]) &&
+                  (to == LabelImage::kNoRegion || got[to] + volume <= most[to]);
+      if (!given_[p]) continue;
+      if (from != LabelImage::kNoRegion) lost[from] += volume;
+      if (to != LabelImage::kNoRegion) got[to] += volume;
+    }
   }
 
   /// Gives what was chosen to neighbours: of those that stay the one with most faces, the first of equals; where none
@@ -100,6 +129,10 @@ class Pieces {
   }
 
  private:
+  bool is_hole(std::uint32_t p, double below) const {
+    return all_[p].region == LabelImage::kNoRegion && !all_[p].at_edge && all_[p].volume < below;
+  }
+
   /// Per piece: the faces that it has with each region, those of neighbours that stay counted apart.
   using Faces = std::map<std::uint16_t, std::pair<std::uint64_t, std::uint64_t>>;
 
@@ -141,52 +174,88 @@ class Pieces {
   static constexpr std::uint32_t kNone = 0xffffffff;
 };
 
-/// "3 islands (17 voxels) of "liver"".
-void note_islands(const std::vector<Pieces::Piece>& given, double below, LabelImage& image) {
+std::string name_of(const LabelImage& image, std::uint16_t region) {
+  return region < image.labels.size() ? fmt::format("\"{}\"", image.labels[region].name) : std::string("the outside");
+}
+
+/// What the first ones are, and how many others there are.
+std::string listed(const std::vector<std::string>& all, const char* others) {
+  std::string list;
+  for (std::size_t i = 0; i < std::min(kMostListed, all.size()); ++i) list += (i == 0 ? "" : ", ") + all[i];
+  if (all.size() > kMostListed) list += fmt::format(", {} {}", all.size() - kMostListed, others);
+  return list;
+}
+
+/// Counts by what they are of, most first.
+template <class Key>
+std::vector<std::pair<Key, std::pair<std::uint64_t, std::uint64_t>>> most_first(
+    const std::map<Key, std::pair<std::uint64_t, std::uint64_t>>& counts) {
+  std::vector<std::pair<Key, std::pair<std::uint64_t, std::uint64_t>>> sorted(counts.begin(), counts.end());
+  std::ranges::stable_sort(sorted, std::ranges::greater{}, [](const auto& of) { return of.second; });
+  return sorted;
+}
+
+/// ""liver" 3 (17 voxels)".
+std::string islands_among(const std::vector<Pieces::Piece>& given, const LabelImage& image) {
   std::map<std::uint16_t, std::pair<std::uint64_t, std::uint64_t>> of_region;
   for (const Pieces::Piece& p : given) {
+    if (p.region == LabelImage::kNoRegion) continue;
     ++of_region[p.region].first;
     of_region[p.region].second += p.voxels;
   }
-  std::string list;
-  for (const auto& [region, n] : of_region)
-    list += fmt::format("{}\"{}\" {} ({})", list.empty() ? "" : ", ", image.labels[region].name, n.first,
-                        counted(n.second, "voxel"));
-  image.notes.push_back(fmt::format("islands below {:.6g}: {}", below, list.empty() ? "none" : list));
+  std::vector<std::string> all;
+  for (const auto& [region, n] : most_first(of_region))
+    all.push_back(fmt::format("{} {} ({})", name_of(image, region), n.first, counted(n.second, "voxel")));
+  return all.empty() ? "none" : listed(all, "other regions");
+}
+
+/// "7 filled (9 voxels)".
+std::string holes_among(const std::vector<Pieces::Piece>& given) {
+  std::uint64_t voxels = 0, holes = 0;
+  for (const Pieces::Piece& p : given)
+    if (p.region == LabelImage::kNoRegion) {
+      ++holes;
+      voxels += p.voxels;
+    }
+  return fmt::format("{} filled ({})", holes, counted(voxels, "voxel"));
+}
+
+void note_islands(const std::vector<Pieces::Piece>& given, double below, LabelImage& image) {
+  image.notes.push_back(fmt::format("islands below {:.6g}: {}", below, islands_among(given, image)));
 }
 
 void note_holes(const std::vector<Pieces::Piece>& given, double below, LabelImage& image) {
-  std::uint64_t voxels = 0;
-  for (const Pieces::Piece& p : given) voxels += p.voxels;
-  image.notes.push_back(
-      fmt::format("holes below {:.6g}: {} filled ({})", below, given.size(), counted(voxels, "voxel")));
+  image.notes.push_back(fmt::format("holes below {:.6g}: {}", below, holes_among(given)));
+}
+
+void note_specks(const std::vector<Pieces::Piece>& given, double below, LabelImage& image) {
+  if (given.empty()) return;
+  image.notes.push_back(fmt::format(
+      "specks below an element ({:.4g}) go to what is around them: of {}; holes: {}. `islands` 0 and `holes` "
+      "0 keep them",
+      below, islands_among(given, image), holes_among(given)));
 }
 
 /// "219 spots (342 voxels): "gray" and "skull" 120, ...".
 void note_contacts(const image::ClearedContacts& cleared, double below, LabelImage& image) {
-  std::vector<std::pair<std::uint64_t, std::pair<std::uint16_t, std::uint16_t>>> pairs;
+  std::map<std::pair<std::uint16_t, std::uint16_t>, std::pair<std::uint64_t, std::uint64_t>> spots;
   std::uint64_t all = 0;
   for (const auto& [pair, n] : cleared.spots) {
-    pairs.emplace_back(n, pair);
+    spots[pair].first = n;
     all += n;
   }
   if (all == 0) return;
-  std::stable_sort(pairs.begin(), pairs.end(), [](const auto& p, const auto& q) { return p.first > q.first; });
-  const auto name = [&](std::uint16_t r) {
-    return r < image.labels.size() ? fmt::format("\"{}\"", image.labels[r].name) : std::string("the outside");
-  };
-  constexpr std::size_t kMostNamed = 3;
-  std::string list;
-  for (std::size_t p = 0; p < std::min(kMostNamed, pairs.size()); ++p)
-    list += fmt::format("{}{} and {} {}", p == 0 ? "" : ", ", name(pairs[p].second.first), name(pairs[p].second.second),
-                        pairs[p].first);
-  if (pairs.size() > kMostNamed) list += fmt::format(", {} other pairs", pairs.size() - kMostNamed);
+  std::vector<std::string> pairs;
+  for (const auto& [pair, n] : most_first(spots))
+    pairs.push_back(fmt::format("{} and {} {}", name_of(image, pair.first), name_of(image, pair.second), n.first));
   image.notes.push_back(fmt::format("contacts below {:.4g}: {} cleared, by {}: {}; `contacts` keep leaves them", below,
-                                    counted(all, "spot"), counted(cleared.voxels, "voxel"), list));
+                                    counted(all, "spot"), counted(cleared.voxels, "voxel"),
+                                    listed(pairs, "other pairs")));
 }
 
 void check(const CleanOptions& options) {
-  if (!(options.islands >= 0) || !(options.holes >= 0) || !(options.contacts >= 0))
+  if (!(options.islands >= 0) || !(options.holes >= 0) || !(options.contacts >= 0) || !(options.specks >= 0) ||
+      !(options.speck_holes >= 0))
     throw OptionError(
         "volumes of islands and holes, areas of contacts are at least 0 (`islands`, `holes`, `contacts`)");
   constexpr std::uint32_t kMostClosing = 64;
@@ -209,13 +278,18 @@ LabelImage cleaned(const LabelImage& image, const CleanOptions& options, const R
     if (!(below > 0)) return;
     context.check();
     Pieces pieces(out);
-    (pieces.*choose)(below);
+    choose(pieces);
     std::vector<std::uint16_t> regions = out.regions;
     note(pieces.give(regions), below, out);
     out.regions = std::move(regions);
   };
-  give(options.islands, &Pieces::choose_islands, note_islands);
-  give(options.holes, &Pieces::choose_holes, note_holes);
+  give(
+      options.islands, [&](Pieces& pieces) { pieces.choose_islands(options.islands); }, note_islands);
+  give(
+      options.holes, [&](Pieces& pieces) { pieces.choose_holes(options.holes); }, note_holes);
+  give(
+      std::max(options.specks, options.speck_holes),
+      [&](Pieces& pieces) { pieces.choose_specks(options.specks, options.speck_holes); }, note_specks);
   if (options.contacts > 0)
     note_contacts(image::clear_small_contacts(out, std::sqrt(options.contacts), context), options.contacts, out);
   return out;

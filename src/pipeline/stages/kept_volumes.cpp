@@ -205,7 +205,6 @@ void keep_mesh_volumes(const Prepared& input, const std::vector<double>& wanted,
 }
 
 void describe_needed(const SurfaceMesh& walls, double size, Report& report) {
-  constexpr double kRegularTet = 0.11785113;      // its volume over the cube of its edge
   constexpr double kRegularTriangle = 0.4330127;  // its area over the square of its edge
   for (RegionSummary& region : report.regions) region.needed = region.volume / (kRegularTet * size * size * size);
   if (report.regions.size() < 2) return;

@@ -103,7 +103,7 @@ class SeamedFront : public FrontKind {
   SizeField fitted(const SizeField& in_strips, const std::vector<std::uint8_t>& is_fixed) const override {
     const RunContext& context = work_.stage.context();
     const SizeField in_corners = fitted_to_corners(seamed_.input, seamed_, is_fixed, in_strips, least_, context);
-    const std::vector<PointSize> small = least_.small_regions(in_corners);
+    const std::vector<PointSize> small = least_.small_shells(in_corners);
     return periodic_sizes(small.empty() ? in_corners : capped_at(in_corners, small, context, {.gradation = kSteep}),
                           work_.surface(), work_.periods, context);
   }

@@ -276,6 +276,33 @@ TEST(Cleaning, HolesInsideAreFilledAndBaysAreNot) {
   EXPECT_EQ(cleaned(label_image({5, 5, 5}, regions, 1), options).regions[62], kOut);
 }
 
+TEST(Cleaning, SpecksGoWhileTheyAreOneInAHundred) {
+  constexpr std::uint32_t n = 12;
+  const auto at = [](std::uint32_t i, std::uint32_t j, std::uint32_t k) { return i + n * (j + n * k); };
+  std::vector<std::uint16_t> regions(n * n * n, 0);  // 1,728 voxels of the first region
+  regions[at(3, 3, 3)] = kOut;
+  regions[at(3, 3, 4)] = kOut;                                      // a hole of two
+  for (std::uint32_t i = 5; i < 11; ++i) regions[at(i, 5, 5)] = 1;  // most of the second region,
+  for (const std::uint32_t i : {2u, 8u}) regions[at(i, 9, 9)] = 1;  // and a third of it elsewhere
+  for (std::uint32_t k = 0; k < n; ++k)
+    for (std::uint32_t j = 0; j < n; ++j) regions[at(0, j, k)] = 2;  // 144 of the third,
+  regions[at(4, 2, 8)] = 2;                                          // one elsewhere,
+  for (const std::uint32_t i : {6u, 7u}) regions[at(i, 2, 8)] = 2;   // and two, which would be one too many
+  CleanOptions options;
+  options.specks = options.speck_holes = 3.5;
+  const LabelImage out = cleaned(label_image({n, n, n}, regions, 3), options);
+  EXPECT_EQ(out.regions[at(3, 3, 3)], 0);
+  EXPECT_EQ(out.regions[at(3, 3, 4)], 0);
+  EXPECT_EQ(out.regions[at(2, 9, 9)], 1);
+  EXPECT_EQ(out.regions[at(8, 9, 9)], 1);
+  EXPECT_EQ(out.regions[at(4, 2, 8)], 0);
+  EXPECT_EQ(out.regions[at(6, 2, 8)], 2);
+  ASSERT_EQ(out.notes.size(), 1u);
+  EXPECT_NE(out.notes[0].find("1 (1 voxel); holes: 1 filled (2 voxels)"), std::string::npos) << out.notes[0];
+  options.speck_holes = 0;
+  EXPECT_EQ(cleaned(label_image({n, n, n}, regions, 3), options).regions[at(3, 3, 3)], kOut);
+}
+
 TEST(Cleaning, GapsCloseUpToTwiceTheReach) {
   for (std::uint32_t gap = 1; gap <= 6; ++gap)
     for (std::uint32_t reach = 1; reach <= 3; ++reach) {
