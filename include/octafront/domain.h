@@ -56,9 +56,9 @@ struct ImageIntake {
   /// Small contacts of labels are cleared (CleanOptions::contacts): those below an area, or "keep". Empty: below the
   /// square of `size`, if that is given and the image is not repeated.
   std::string contacts = {};
-  /// CleanOptions::islands and holes, >= 0. Without a value, and where a `size` is given and the image is not repeated,
-  /// specks of labels are removed that are smaller than an element of that size (CleanOptions::specks).
-  std::optional<double> islands = {}, holes = {};
+  /// Specks of labels are removed (CleanOptions::specks): those below this volume, >= 0. Without a value below an
+  /// element of `size`, if that is given and the image is not repeated.
+  std::optional<double> specks = {};
   std::optional<double> size = {};  ///< the edge length that elements will have, in the unit of the file, > 0
   /// Closed surfaces that read_surface() knows, behind those in `regions`: ImageRegions::surfaces.
   std::vector<FileOfLabel> surface_files = {};

@@ -162,10 +162,10 @@ struct CleanOptions {
   /// Where two regions, or one and the outside, touch in a spot of less than this area (in the squared unit of the
   /// file), or in a strip a voxel or two wide, a region beside it comes between them.
   double contacts = 0;
-  /// Islands and holes below these volumes as well, but the smallest first, and only while a region neither loses nor
+  /// Islands and holes below this volume as well, but the smallest first, and only while a region neither loses nor
   /// gets more than 1 % so: specks that elements of the size wanted cannot have, as long as they are noise.
-  double specks = 0, speck_holes = 0;
-  bool any() const { return islands > 0 || holes > 0 || closing > 0 || contacts > 0 || specks > 0 || speck_holes > 0; }
+  double specks = 0;
+  bool any() const { return islands > 0 || holes > 0 || closing > 0 || contacts > 0 || specks > 0; }
 };
 
 /// Closes, removes islands, fills holes, removes specks, clears small contacts, in this order; voxels that share a face

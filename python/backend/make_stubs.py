@@ -256,6 +256,7 @@ OF_IMAGES = """\
     bands: Mapping[str, tuple[float | None, float | None]] | None = None,
     islands: float | None = None,
     holes: float | None = None,
+    specks: float | None = None,
     close_voxels: int | None = None,
     surface_of: Mapping[str | int, Path | Sequence[Path]] | None = None,
     crop: Sequence[Sequence[int | None]] | None = None,

@@ -338,7 +338,7 @@ class Images(unittest.TestCase):
             return done.stdout + done.stderr, json.loads(report.read_text())
         said, clean = run()
         self.assertIn('of "label 2" 1 (6 voxels)', said)
-        said, kept = run("--islands", 0)
+        said, kept = run("--specks", 0)
         self.assertNotIn("specks below", said)
         for made in (clean, kept):
             self.assertGreater(made["quality"]["dihedral_min_degrees"], 5)

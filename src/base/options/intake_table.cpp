@@ -144,16 +144,23 @@ std::vector<Row<IntakeOptions>> image_rows() {
                        "Pieces of regions below this volume go to what surrounds them; each region keeps its largest")
               .takes("V")
               .from(0)
-              .without("an element of the size, if one is given, and 1 % of a region")
               .also("check"),
-          [](auto& o) -> auto& { return o.image.islands; }),
+          [](auto& o) -> auto& { return o.image.regions.clean.islands; }),
       intake_row(
           about_intake("holes", kGroup, "Pieces of the outside below this volume, not at the image's edge, are filled")
               .takes("V")
               .from(0)
-              .without("as `islands`")
               .also("check"),
-          [](auto& o) -> auto& { return o.image.holes; }),
+          [](auto& o) -> auto& { return o.image.regions.clean.holes; }),
+      intake_row(
+          about_intake("specks", kGroup,
+                       "Pieces of labels and holes below this volume go to what surrounds them, while they are at most "
+                       "1 % of a region; 0: they stay")
+              .takes("V")
+              .from(0)
+              .without("an element of the size, if one is given")
+              .also("check"),
+          [](auto& o) -> auto& { return o.image.specks; }),
       intake_row(
           about_intake("contacts", kGroup,
                        "Where labels touch in spots below this area, or in strips of a voxel or two, a label beside "

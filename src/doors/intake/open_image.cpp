@@ -154,20 +154,18 @@ double area_of_contacts(const Image& image, const ImageRegions& regions, const I
   return size * size;
 }
 
-/// What was asked for, and specks below an element where nothing was.
-void set_islands_and_holes(const ImageIntake& asked, bool is_labels, bool repeats, CleanOptions& clean) {
-  const double size = is_labels && !repeats ? asked.size.value_or(0) : 0;
-  const double element = kRegularTet * size * size * size;
-  if (clean.islands == 0) clean.islands = asked.islands.value_or(0);
-  if (clean.holes == 0) clean.holes = asked.holes.value_or(0);
-  if (clean.islands == 0 && !asked.islands) clean.specks = element;
-  if (clean.holes == 0 && !asked.holes) clean.speck_holes = element;
+/// `repeats`: as for contacts.
+double volume_of_specks(const Image& image, const ImageRegions& regions, const ImageIntake& asked, bool repeats) {
+  if (repeats || kind_of(image, regions) != ImageRegions::Kind::kLabels) return 0;
+  if (asked.specks) return *asked.specks;
+  const double size = asked.size.value_or(0);
+  return kRegularTet * size * size * size;
 }
 
 void check_cleaning(const ImageIntake& asked) {
   const CleanOptions& clean = asked.regions.clean;
-  for (const auto& [option, volume] : {std::pair{"islands", asked.islands.value_or(clean.islands)},
-                                       std::pair{"holes", asked.holes.value_or(clean.holes)}})
+  for (const auto& [option, volume] : {std::pair{"islands", clean.islands}, std::pair{"holes", clean.holes},
+                                       std::pair{"specks", asked.specks.value_or(clean.specks)}})
     if (!(volume >= 0)) throw OptionError(fmt::format("`{}` is {}: it must not be below 0", option, volume));
   constexpr std::uint32_t kMost = 64;
   if (clean.closing > kMost)
@@ -188,8 +186,9 @@ void refuse_image_options(const ImageIntake& image, const std::string& name) {
                                                 {!labels.merge.empty(), "merge"},
                                                 {!image.regions.electrodes.empty(), "electrode"},
                                                 {has_surfaces, "surface_of"},
-                                                {image.islands || clean.islands > 0, "islands"},
-                                                {image.holes || clean.holes > 0, "holes"},
+                                                {clean.islands > 0, "islands"},
+                                                {clean.holes > 0, "holes"},
+                                                {image.specks || clean.specks > 0, "specks"},
                                                 {clean.closing > 0, "close_voxels"},
                                                 {!image.contacts.empty(), "contacts"},
                                                 {!image.regions.closed_at_box, "closed_at_box"},
@@ -213,8 +212,7 @@ void take_image(Domain& domain, const IntakeOptions& options, const Image& image
   const Image& used = part ? *part : given;
   const std::array<bool, 3> repeated = axes_named("repeat", options.repeat.value_or(""));
   const bool repeats = std::ranges::any_of(repeated, [](bool along) { return along; });
-  const bool is_labels = kind_of(used, regions) == ImageRegions::Kind::kLabels;
-  set_islands_and_holes(options.image, is_labels, repeats, regions.clean);
+  if (regions.clean.specks == 0) regions.clean.specks = volume_of_specks(used, regions, options.image, repeats);
   if (regions.clean.contacts == 0) regions.clean.contacts = area_of_contacts(used, regions, options.image, repeats);
   domain.format = image.format;
   domain.frame = image.frame;

@@ -85,14 +85,14 @@ class Pieces {
   }
 
   /// The smallest first, while no region loses or gets more than a small part.
-  void choose_specks(double islands, double holes) {
+  void choose_specks(double below) {
     std::vector<std::uint32_t> specks;
     std::vector<double> most(image_.labels.size(), 0.0);
     for (const Piece& piece : all_)
       if (piece.region != LabelImage::kNoRegion) most[piece.region] += kMostInSpecks * piece.volume;
-    choose_islands(islands);
+    choose_islands(below);
     for (std::uint32_t p = 0; p < all_.size(); ++p) {
-      given_[p] = given_[p] || is_hole(p, holes);
+      given_[p] = given_[p] || is_hole(p, below);
       if (given_[p]) specks.push_back(p);
     }
     const std::vector<std::uint16_t> heir = heirs();
@@ -230,10 +230,9 @@ void note_holes(const std::vector<Pieces::Piece>& given, double below, LabelImag
 
 void note_specks(const std::vector<Pieces::Piece>& given, double below, LabelImage& image) {
   if (given.empty()) return;
-  image.notes.push_back(fmt::format(
-      "specks below an element ({:.4g}) go to what is around them: of {}; holes: {}. `islands` 0 and `holes` "
-      "0 keep them",
-      below, islands_among(given, image), holes_among(given)));
+  image.notes.push_back(
+      fmt::format("specks below {:.4g} go to what is around them: of {}; holes: {}; `specks` 0 keeps them", below,
+                  islands_among(given, image), holes_among(given)));
 }
 
 /// "219 spots (342 voxels): "gray" and "skull" 120, ...".
@@ -254,8 +253,7 @@ void note_contacts(const image::ClearedContacts& cleared, double below, LabelIma
 }
 
 void check(const CleanOptions& options) {
-  if (!(options.islands >= 0) || !(options.holes >= 0) || !(options.contacts >= 0) || !(options.specks >= 0) ||
-      !(options.speck_holes >= 0))
+  if (!(options.islands >= 0) || !(options.holes >= 0) || !(options.contacts >= 0) || !(options.specks >= 0))
     throw OptionError(
         "volumes of islands and holes, areas of contacts are at least 0 (`islands`, `holes`, `contacts`)");
   constexpr std::uint32_t kMostClosing = 64;
@@ -288,8 +286,7 @@ LabelImage cleaned(const LabelImage& image, const CleanOptions& options, const R
   give(
       options.holes, [&](Pieces& pieces) { pieces.choose_holes(options.holes); }, note_holes);
   give(
-      std::max(options.specks, options.speck_holes),
-      [&](Pieces& pieces) { pieces.choose_specks(options.specks, options.speck_holes); }, note_specks);
+      options.specks, [&](Pieces& pieces) { pieces.choose_specks(options.specks); }, note_specks);
   if (options.contacts > 0)
     note_contacts(image::clear_small_contacts(out, std::sqrt(options.contacts), context), options.contacts, out);
   return out;
