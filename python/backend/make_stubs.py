@@ -257,11 +257,13 @@ OF_IMAGES = """\
     islands: float | None = None,
     holes: float | None = None,
     specks: float | None = None,
+    contacts: float | str | None = None,
     close_voxels: int | None = None,
     surface_of: Mapping[str | int, Path | Sequence[Path]] | None = None,
     crop: Sequence[Sequence[int | None]] | None = None,
     resample: float | Sequence[float] | None = None,
-    closed_at_box: bool = True"""
+    closed_at_box: bool = True,
+    size: float | None = None"""
 KINDS = {"number": "float", "whole": "int", "flag": "bool", "text": "str"}
 
 

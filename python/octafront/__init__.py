@@ -31,8 +31,6 @@ __all__ = ["Cancelled", "Checked", "Error", "InputError", "InternalError", "Mesh
            "errors", "formats", "image_surface", "improve", "join_bodies", "mend", "mesh", "mesh_file", "mesh_image", "metrics", "read",
            "repair", "size_field", "surface"]
 
-_REGULAR_TET = .11785113  # its volume over the cube of its edge
-
 
 @_takes_options("mesh")
 def mesh(points, triangles=None, **keywords):
@@ -72,7 +70,7 @@ def mesh_file(path, **keywords):
 
 def image_surface(image, affine=None, *, spacing=None, series=0, kind="auto", labels=None, ignore=None, merge=None,
                   iso=None, bands=None, islands=None, holes=None, specks=None, contacts=None, close_voxels=None, surface_of=None, crop=None,
-                  resample=None, closed_at_box=True, progress=None, threads=0):
+                  resample=None, closed_at_box=True, size=None, progress=None, threads=0):
     """The surfaces between the labels of an image, or between bands of its grey values: a Surface with a region for
     each, named. Smooth, volumes of labels kept. report["regions"] has their names and volumes, report["notes"] what was
     decided and changed.
@@ -88,16 +86,17 @@ def image_surface(image, affine=None, *, spacing=None, series=0, kind="auto", la
     iso: of a grey image; what has this value or more is the region "body".
     bands: {"skin": (-200, 226), "bone": (226, None)}: values from the first up to below the second; None: no limit.
     islands, holes: pieces of regions, and of the outside, below this volume go to what surrounds them.
-    specks: the same, while they are at most 1 % of a region. Without a value none here, and in mesh_image() what is
-        smaller than an element of the size.
+    specks: the same, while they are at most 1 % of a region. Without a value what is smaller than an element of
+        `size`.
     contacts: where labels touch in spots below this area, or in strips of a voxel or two, a label beside them comes
-        between; "keep": nowhere. Without a value nowhere here, and in mesh_image() below the square of the size.
+        between; "keep": nowhere. Without a value below the square of `size`.
     close_voxels: gaps toward the outside close that are up to twice as many voxels wide.
     surface_of: {"grey matter": "pial.stl"}: a file, or several, with closed surfaces of a label, by its name or number, in
         the coordinates of the image: within two voxels of them voxels follow them, and vertices lie on them.
     crop: ((i0, i1), (j0, j1), (k0, k1)), counted from 0, the last ones too; None for an end that stays.
     resample: spacing of the voxels to work with, one number or three.
     closed_at_box: regions that reach the edge of the image end flat there; False: they are refused.
+    size: the edge length that elements will have; without it no specks and contacts are removed but those asked for.
 
     Raises OptionError, InputError, Cancelled.
 
@@ -105,7 +104,7 @@ def image_surface(image, affine=None, *, spacing=None, series=0, kind="auto", la
     """
     regions = {"kind": kind, "labels": labels, "ignore": ignore, "merge": merge, "iso": iso, "bands": bands,
                "islands": islands, "holes": holes, "specks": specks, "contacts": None if contacts is None else str(contacts), "close_voxels": close_voxels, "surface_of": surface_of, "crop": crop, "resample": resample,
-               "closed_at_box": closed_at_box}
+               "closed_at_box": closed_at_box, "size": size}
     return _surface_of_image(image, affine, spacing, series, regions, threads, progress)
 
 
@@ -122,9 +121,8 @@ def mesh_image(image, affine=None, **keywords):
     def way_in():
         settings = _Settings("mesh_image", "mesh", keywords, image)
         series = settings.intake.pop("series", 0)
-        if "contacts" in settings.intake or isinstance(size, (int, float)):
-            settings.intake["contacts"] = str(settings.intake.get("contacts", float(size or 0) ** 2))
-            settings.intake["specks"] = settings.intake.get("specks", _REGULAR_TET * float(size or 0) ** 3)
+        if isinstance(size, (int, float)):
+            settings.intake["size"] = size
         made = _surface_of_image(image, affine, spacing, series, {**settings.repeat, **settings.intake}, settings.threads,
                                  settings.progress)
         settings.intake = {}

@@ -342,7 +342,7 @@ class Images(unittest.TestCase):
         self.assertNotIn("specks below", said)
         for made in (clean, kept):
             self.assertGreater(made["quality"]["dihedral_min_degrees"], 5)
-        volume = {made["regions"][1]["name"]: made["regions"][1]["volume"] for made in (kept,)}
+        volume = {region["name"]: region["volume"] for region in kept["regions"]}
         self.assertAlmostEqual(volume["label 2"] / (6 + 18 * 18 * 5), 1, 2)
         # What is more than 1 % of its label is no speck.
         few = self.write("few.nii", nifti(size, boxes(size, (1, (2, 2, 2), (22, 22, 16)), (2, (9, 9, 9), (11, 12, 10)), (2, (3, 3, 17), (9, 9, 20)))))

@@ -496,7 +496,7 @@ class OneWayIn(BesideTheLine):
     def test_images(self):
         file, names = SAMPLES / "head_labels.nii.gz", SAMPLES / "head_labels.txt"
         expected = self.line(file, "--labels", names, "--resample", 12, "--size", 30)["hash"]
-        surface = octafront.image_surface(file, labels=names, resample=12, contacts=900, specks=3182)  # of elements of 30
+        surface = octafront.image_surface(file, labels=names, resample=12, size=30)
         for mesh in (octafront.mesh(file, labels=names, resample=12, size=30), octafront.mesh(surface, size=30),
                      octafront.mesh_image(file, labels=names, resample=12, size=30),
                      octafront.mesh(pickle.loads(pickle.dumps(surface)), size=30)):

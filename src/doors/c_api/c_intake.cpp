@@ -80,6 +80,7 @@ const std::map<std::string, Take>& lists() {
        [](IntakeOptions& o, const Json& v) {
          for (const Json& row : v) o.inside.points.push_back({row.at(0).get<std::string>(), points_of(row.at(1))});
        }},
+      {"size", [](IntakeOptions& o, const Json& v) { o.image.size = v.get<double>(); }},
       {"names_file", [](IntakeOptions& o, const Json& v) { o.image.names_file = v.get<std::string>(); }},
       {"names",
        [](IntakeOptions& o, const Json& v) {

@@ -11,6 +11,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <functional>
 #include <map>
 #include <utility>
 
@@ -95,12 +96,12 @@ class Pieces {
       given_[p] = given_[p] || is_hole(p, below);
       if (given_[p]) specks.push_back(p);
     }
-    const std::vector<std::uint16_t> heir = heirs();
+    heir_ = heirs();
     std::ranges::stable_sort(specks, {}, [&](std::uint32_t p) { return all_[p].volume; });
     std::vector<double> lost(most.size(), 0.0), got(most.size(), 0.0);
     for (const std::uint32_t p : specks) {
       const double volume = all_[p].volume;
-      const std::uint16_t from = all_[p].region, to = heir[p];
+      const std::uint16_t from = all_[p].region, to = heir_[p];
       given_[p] = (from == LabelImage::kNoRegion || lost[from] + volume <= most[from]) &&
                   (to == LabelImage::kNoRegion || got[to] + volume <= most[to]);
       if (!given_[p]) continue;
@@ -111,9 +112,9 @@ class Pieces {
 
   /// Gives what was chosen to neighbours: of those that stay the one with most faces, the first of equals; where none
   /// stays, of all. Returns what was given, in order.
-  std::vector<Piece> give(std::vector<std::uint16_t>& regions) const {
+  std::vector<Piece> give(std::vector<std::uint16_t>& regions) {
     std::vector<Piece> given;
-    const std::vector<std::uint16_t> heir = heirs();
+    if (heir_.empty()) heir_ = heirs();
     for (std::uint32_t p = 0; p < all_.size(); ++p)
       if (given_[p]) given.push_back(all_[p]);
     const std::size_t ni = image_.grid.size[0];
@@ -122,7 +123,7 @@ class Pieces {
         const std::uint32_t p = runs_.piece()[r];
         if (!given_[p]) continue;
         const auto begin = regions.begin() + static_cast<std::ptrdiff_t>(row * ni);
-        std::fill(begin + runs_.run(r).begin, begin + runs_.run(r).end, heir[p]);
+        std::fill(begin + runs_.run(r).begin, begin + runs_.run(r).end, heir_[p]);
       }
     });
     return given;
@@ -171,6 +172,7 @@ class Pieces {
   Runs runs_;
   std::vector<Piece> all_;
   std::vector<bool> given_;
+  std::vector<std::uint16_t> heir_;  ///< of each piece; empty: not looked for yet
   static constexpr std::uint32_t kNone = 0xffffffff;
 };
 
@@ -187,11 +189,10 @@ std::string listed(const std::vector<std::string>& all, const char* others) {
 }
 
 /// Counts by what they are of, most first.
-template <class Key>
-std::vector<std::pair<Key, std::pair<std::uint64_t, std::uint64_t>>> most_first(
-    const std::map<Key, std::pair<std::uint64_t, std::uint64_t>>& counts) {
-  std::vector<std::pair<Key, std::pair<std::uint64_t, std::uint64_t>>> sorted(counts.begin(), counts.end());
-  std::ranges::stable_sort(sorted, std::ranges::greater{}, [](const auto& of) { return of.second; });
+template <class Of, class Count>
+std::vector<std::pair<Of, Count>> most_first(const std::map<Of, Count>& counts) {
+  std::vector<std::pair<Of, Count>> sorted(counts.begin(), counts.end());
+  std::ranges::stable_sort(sorted, std::ranges::greater{}, &std::pair<Of, Count>::second);
   return sorted;
 }
 
@@ -237,16 +238,13 @@ void note_specks(const std::vector<Pieces::Piece>& given, double below, LabelIma
 
 /// "219 spots (342 voxels): "gray" and "skull" 120, ...".
 void note_contacts(const image::ClearedContacts& cleared, double below, LabelImage& image) {
-  std::map<std::pair<std::uint16_t, std::uint16_t>, std::pair<std::uint64_t, std::uint64_t>> spots;
+  if (cleared.spots.empty()) return;
   std::uint64_t all = 0;
-  for (const auto& [pair, n] : cleared.spots) {
-    spots[pair].first = n;
-    all += n;
-  }
-  if (all == 0) return;
   std::vector<std::string> pairs;
-  for (const auto& [pair, n] : most_first(spots))
-    pairs.push_back(fmt::format("{} and {} {}", name_of(image, pair.first), name_of(image, pair.second), n.first));
+  for (const auto& [pair, n] : most_first(cleared.spots)) {
+    all += n;
+    pairs.push_back(fmt::format("{} and {} {}", name_of(image, pair.first), name_of(image, pair.second), n));
+  }
   image.notes.push_back(fmt::format("contacts below {:.4g}: {} cleared, by {}: {}; `contacts` keep leaves them", below,
                                     counted(all, "spot"), counted(cleared.voxels, "voxel"),
                                     listed(pairs, "other pairs")));
@@ -255,7 +253,8 @@ void note_contacts(const image::ClearedContacts& cleared, double below, LabelIma
 void check(const CleanOptions& options) {
   if (!(options.islands >= 0) || !(options.holes >= 0) || !(options.contacts >= 0) || !(options.specks >= 0))
     throw OptionError(
-        "volumes of islands and holes, areas of contacts are at least 0 (`islands`, `holes`, `contacts`)");
+        "volumes of islands, holes and specks, areas of contacts are at least 0 (`islands`, `holes`, `specks`, "
+        "`contacts`)");
   constexpr std::uint32_t kMostClosing = 64;
   if (options.closing > kMostClosing)
     throw OptionError(fmt::format("`close_voxels` is {}; at most {} can be closed", options.closing, kMostClosing));
@@ -276,17 +275,14 @@ LabelImage cleaned(const LabelImage& image, const CleanOptions& options, const R
     if (!(below > 0)) return;
     context.check();
     Pieces pieces(out);
-    choose(pieces);
+    (pieces.*choose)(below);
     std::vector<std::uint16_t> regions = out.regions;
     note(pieces.give(regions), below, out);
     out.regions = std::move(regions);
   };
-  give(
-      options.islands, [&](Pieces& pieces) { pieces.choose_islands(options.islands); }, note_islands);
-  give(
-      options.holes, [&](Pieces& pieces) { pieces.choose_holes(options.holes); }, note_holes);
-  give(
-      options.specks, [&](Pieces& pieces) { pieces.choose_specks(options.specks); }, note_specks);
+  give(options.islands, &Pieces::choose_islands, note_islands);
+  give(options.holes, &Pieces::choose_holes, note_holes);
+  give(options.specks, &Pieces::choose_specks, note_specks);
   if (options.contacts > 0)
     note_contacts(image::clear_small_contacts(out, std::sqrt(options.contacts), context), options.contacts, out);
   return out;

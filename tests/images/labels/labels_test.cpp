@@ -283,7 +283,7 @@ TEST(Cleaning, SpecksGoWhileTheyAreOneInAHundred) {
   regions[at(3, 3, 3)] = kOut;
   regions[at(3, 3, 4)] = kOut;                                      // a hole of two
   for (std::uint32_t i = 5; i < 11; ++i) regions[at(i, 5, 5)] = 1;  // most of the second region,
-  for (const std::uint32_t i : {2u, 8u}) regions[at(i, 9, 9)] = 1;  // and a third of it elsewhere
+  for (const std::uint32_t i : {2u, 8u}) regions[at(i, 9, 9)] = 1;  // and a quarter of it elsewhere
   for (std::uint32_t k = 0; k < n; ++k)
     for (std::uint32_t j = 0; j < n; ++j) regions[at(0, j, k)] = 2;  // 144 of the third,
   regions[at(4, 2, 8)] = 2;                                          // one elsewhere,
