@@ -494,11 +494,13 @@ def image_surface(image: npt.ArrayLike | Path | Sequence[Path], affine: npt.Arra
     islands: float | None = None,
     holes: float | None = None,
     specks: float | None = None,
+    contacts: float | str | None = None,
     close_voxels: int | None = None,
     surface_of: Mapping[str | int, Path | Sequence[Path]] | None = None,
     crop: Sequence[Sequence[int | None]] | None = None,
     resample: float | Sequence[float] | None = None,
     closed_at_box: bool = True,
+    size: float | None = None,
     progress: Progress | None = None,
     threads: int = 0) -> Surface: ...
 def surface(points: npt.ArrayLike | Input, triangles: npt.ArrayLike | None = None, *,
