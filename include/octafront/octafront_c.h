@@ -248,8 +248,9 @@ octafront_job* octafront_read_image(const char* const* files, size_t count, uint
  * ([["steel", [x, y, z]], ...]), voids ([[x, y, z], ...]); what lies inside (octafront/inside.h): sheet_files,
  * wire_files, point_files (["fault.stl", "NAME=FILE", ...]), and arrays, inside_sheets ([["fault", points, triangles],
  * ...]), inside_wires ([["wire", points, edges], ...]), inside_points ([["probe", points], ...]); for images size (that
- * elements will have), names ([[3, "liver"], ...]), names_file, ignore ([0, 7]), merge ([["cortex", [3, 4]], ...]), bands ([["bone", 226, null], ...]), surface_of ([["cortex",
- * "pial.stl"], ...]), crop ([[first, last], ...], null for an end that stays), resample (one or three); for CAD apart
+ * elements will have), names ([[3, "liver"], ...]), names_file, ignore ([0, 7]), merge ([["cortex", [3, 4]], ...]),
+ * bands ([["bone", 226, null], ...]), surface_of ([["cortex", "pial.stl"], ...]), crop ([[first, last], ...], null for
+ * an end that stays), resample (one or three); for CAD apart
  * (["fillet", ...]); for formulas box ([x0, y0, z0, x1, y1, z1]).
  *
  * `options`: what octafront_generate() will be given, or null: files of CAD are triangulated for its sizes, as
