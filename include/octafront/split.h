@@ -3,6 +3,7 @@
 #include <octafront/surface_mesh.h>
 #include <octafront/tet_mesh.h>
 
+#include <cstdint>
 #include <string>
 #include <vector>
 
@@ -17,11 +18,22 @@ namespace octafront {
 /// `fault_plus` of the boundary, those of the elements behind it `fault_minus`; `split_faces` tells which belong
 /// together. Of a name that stands for patches in several regions, "fault (clay|clay)", all are opened. A face all of
 /// whose corners lie at the end of a sheet stays closed. Sets and curves that have a doubled node or edge have its
-/// copies, too; further sets of faces lose those that were split.
+/// copies, too; further sets of faces have both sides.
 ///
 /// Returns sentences for the user: what was done. Throws OptionError, before any change, where a patch does not exist
 /// or has no face inside. O(mesh).
 std::vector<std::string> split_patches(TetMesh& mesh, const std::vector<std::string>& places);
+
+/// Opens the contacts of parts: the faces between two regions that lie in one of these patches. Nodes are doubled as
+/// split_patches() does, also where contacts meet, so that parts come apart that no other contact holds together.
+///
+/// A contact `A|B` becomes the patches `A|B`, the faces of the elements of A, and `B|A`, those of B; a piece `A|B#2`
+/// both with this number. One with a name of its own, `seat`, becomes `seat (A|B)` and `seat (B|A)`. One of the two has
+/// the number of the patch before, and `opened_contacts` tells which belong together.
+std::vector<std::string> split_contacts(TetMesh& mesh, const std::vector<std::uint32_t>& patches);
+
+/// The patches with faces between two regions, ascending.
+std::vector<std::uint32_t> contacts_of(const TetMesh& mesh);
 
 /// Throws OptionError if a mesh of this complex would have nothing to split under one of these names.
 void check_split(const SurfaceMesh& complex, const std::vector<std::string>& places);

@@ -73,6 +73,14 @@ struct SplitFace {
   friend bool operator==(const SplitFace&, const SplitFace&) = default;
 };
 
+/// A contact that is open: two patches of the boundary that lie on each other, with nodes of their own.
+struct OpenedContact {
+  std::uint32_t first = 0, second = 0;  ///< patches; those of split_contacts() are `A|B` of part A and `B|A` of part B
+  std::uint32_t conforming = 1;         ///< 1: their triangles are the same; 0: each has its own
+
+  friend bool operator==(const OpenedContact&, const OpenedContact&) = default;
+};
+
 /// A tetrahedral mesh as flat arrays: linear, or of second order.
 ///
 /// What leaves the library is *valid* (see first_defect): every tet is positive by exact sign, every face belongs to
@@ -118,6 +126,7 @@ struct TetMesh {
   /// kNone: it is no wall of any. Empty: not known.
   std::vector<std::uint32_t> face_layers;
   std::vector<SplitFace> split_faces;  ///< faces of the boundary that touch, where the mesh was split; by patch
+  std::vector<OpenedContact> opened_contacts;  ///< by their first patches
 
   bool is_second_order() const { return !mid_nodes.empty(); }
   /// How many there are of what sets of this kind are made of.

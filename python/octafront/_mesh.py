@@ -13,8 +13,8 @@ from ._surface import _or_zeros, array_of, column_of, points_of, rows_of, wanted
 
 _KINDS = ["nodes", "edges", "faces", "elements"]
 _ARRAYS = ["points", "tets", "region", "boundary", "patch", "source", "interfaces", "interface_patch", "curve_edges",
-           "curve", "mid_nodes", "wide_cells", "wide_faces", "split_faces", "periods", "period_rotations",
-           "periodic_nodes"]
+           "curve", "mid_nodes", "wide_cells", "wide_faces", "split_faces", "opened_contacts", "periods",
+           "period_rotations", "periodic_nodes"]
 _LISTS = ["region_names", "patch_names", "curve_names"]
 
 
@@ -133,6 +133,13 @@ class Mesh:
         """(s, 6) uint32, where the mesh was split: the corners of a face of the element behind it, counter-clockwise seen from
         in front, and their partners in front, the same at the end of a sheet."""
         return self._handle.view("split_faces")[:, :6]
+
+    @property
+    def opened_contacts(self):
+        """[(first, second, conforming)]: the names of two patches that lie on each other with nodes of their own, and whether
+        their triangles are the same."""
+        names = self.names["patches"]
+        return [(names[a], names[b], bool(same)) for a, b, same in self._handle.view("opened_contacts")]
 
     @property
     def quads(self):

@@ -142,6 +142,7 @@ void inherit(TetMesh& mesh, const TetMesh& before, const Origins& from) {
   mesh.region_names = before.region_names, mesh.region_labels = before.region_labels;
   mesh.patch_names = before.patch_names, mesh.patch_labels = before.patch_labels;
   mesh.curve_names = before.curve_names, mesh.curve_labels = before.curve_labels;
+  mesh.opened_contacts = before.opened_contacts;
   mesh.sets.clear();
   for (const NamedSet& set : before.sets) mesh.sets.push_back({set.name, set.kind, {}});
   inherit(mesh, before, Kind::kElements, from.tets);

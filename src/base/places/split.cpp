@@ -25,6 +25,28 @@ struct Asked {
   std::vector<std::uint32_t> patches;
 };
 
+/// Which faces are opened together: of a patch, and of a contact between which two regions, ascending.
+using FaceKey = std::array<std::uint32_t, 3>;
+
+/// What becomes two patches.
+struct Opening {
+  std::array<std::string, 2> names;                       ///< of its sides
+  std::array<std::uint32_t, 2> patches = {kNone, kNone};  ///< that they become; kNone: a new one
+  std::uint32_t first_region = kNone;  ///< of the elements whose faces are the first side; kNone: of those in front
+};
+
+struct Openings {
+  std::vector<Opening> list;
+  std::map<FaceKey, std::uint32_t> of;  ///< by what they open
+
+  /// Its number; that of openings: none.
+  std::uint32_t find(std::uint32_t patch, std::uint32_t a, std::uint32_t b) const {
+    for (const FaceKey& key : {FaceKey{patch, kNone, kNone}, FaceKey{patch, std::min(a, b), std::max(a, b)}})
+      if (const auto at = of.find(key); at != of.end()) return at->second;
+    return static_cast<std::uint32_t>(list.size());
+  }
+};
+
 /// The patches with faces inside that are named. `inside`: per patch. Throws OptionError.
 std::vector<Asked> asked_for(const std::vector<std::string>& places, const std::vector<std::string>& names,
                              const std::vector<char>& inside) {
@@ -46,6 +68,84 @@ void note_inside(std::vector<char>& inside, std::uint32_t patch) {
 
 std::uint32_t patch_at(const std::vector<std::uint32_t>& patch, std::size_t face) {
   return patch.empty() ? 0 : patch[face];
+}
+
+Openings openings_of(const std::vector<Asked>& asked) {
+  Openings made;
+  for (const Asked& a : asked) {
+    for (const std::uint32_t p : a.patches)
+      made.of.try_emplace({p, kNone, kNone}, static_cast<std::uint32_t>(made.list.size()));
+    made.list.push_back({{a.name + "_plus", a.name + "_minus"}});
+  }
+  return made;
+}
+
+std::uint32_t region_at(const TetMesh& mesh, TetIndex t) {
+  return mesh.region.empty() ? 0 : mesh.region[t];
+}
+
+std::string region_called(const TetMesh& mesh, std::uint32_t region) {
+  return region_label(region < mesh.region_names.size() ? mesh.region_names[region] : "", region, region + 2);
+}
+
+/// Of faces that lie between two regions, by their patches and these; the numbers of the faces.
+std::map<FaceKey, std::vector<std::uint32_t>> faces_of_contacts(const TetMesh& mesh) {
+  std::map<FaceKey, std::vector<std::uint32_t>> faces;
+  if (mesh.interfaces.empty() || mesh.region.empty()) return faces;
+  const FaceTable table = half_face_table(mesh.tets, mesh.points.size());
+  for (std::uint32_t f = 0; f < mesh.interfaces.size(); ++f) {
+    const auto at = table.group_of(mesh.interfaces[f]);
+    if (at.size() != 2) continue;
+    const auto [a, b] = std::minmax(mesh.region[at[0].face / 4], mesh.region[at[1].face / 4]);
+    if (a != b) faces[{patch_at(mesh.interface_patch, f), a, b}].push_back(f);
+  }
+  return faces;
+}
+
+/// "A|B" of A's side and "B|A" of B's, with what stands behind it ("#2") or around it.
+std::array<std::string, 2> names_of_sides(const std::string& name, const std::string& a, const std::string& b) {
+  const std::array<std::string, 2> pairs{a + "|" + b, b + "|" + a};
+  for (const std::string& pair : pairs) {
+    const std::size_t at = name.find(pair);
+    if (at == name.npos) continue;
+    const std::string before = name.substr(0, at), behind = name.substr(at + pair.size());
+    const bool is_piece =
+        behind.empty() || (behind[0] == '#' && behind.find_first_not_of("0123456789", 1) == name.npos);
+    if ((before.empty() && is_piece) || (before.ends_with('(') && behind == ")"))
+      return {before + pairs[0] + behind, before + pairs[1] + behind};
+  }
+  if (name.empty()) return pairs;
+  return {name + " (" + pairs[0] + ")", name + " (" + pairs[1] + ")"};
+}
+
+/// With a number behind it where another patch is called so.
+std::string not_taken(const std::string& name, std::set<std::string>& taken) {
+  std::string tried = name;
+  for (int k = 2; !taken.insert(tried).second; ++k) tried = name + "#" + std::to_string(k);
+  return tried;
+}
+
+/// Of contacts in these patches. The first one of a patch keeps its number, on the side that keeps its name.
+Openings openings_of(const TetMesh& mesh, const std::vector<std::uint32_t>& patches) {
+  Openings made;
+  std::set<std::string> taken(mesh.patch_names.begin(), mesh.patch_names.end());
+  std::uint32_t last = kNone;
+  for (const auto& [key, faces] : faces_of_contacts(mesh)) {
+    const auto [patch, a, b] = key;
+    if (std::ranges::find(patches, patch) == patches.end()) continue;
+    const std::string name = patch < mesh.patch_names.size() ? mesh.patch_names[patch] : std::string();
+    Opening opening{names_of_sides(name, region_called(mesh, a), region_called(mesh, b)), {kNone, kNone}, a};
+    if (patch != last) {
+      taken.erase(name);
+      const std::size_t keeps = opening.names[1] == name ? 1 : 0;
+      opening.patches[keeps] = patch;
+    }
+    last = patch;
+    for (std::string& side : opening.names) side = not_taken(side, taken);
+    made.of[key] = static_cast<std::uint32_t>(made.list.size());
+    made.list.push_back(std::move(opening));
+  }
+  return made;
 }
 
 /// A node at an element around it, and which copy of the node that gets.
@@ -179,28 +279,33 @@ class NodeCopies {
   VertexIndex extra_corners_ = 0;
 };
 
-/// A face inside that is opened: the element in front of it, and the one behind.
+/// A face inside that is opened: by which opening, the element at its first side, or in front of it, and the other one.
 struct Opened {
-  std::uint32_t interface;
+  std::uint32_t interface, opening;
   HalfFace plus, minus;
 };
 
 class Splitting {
  public:
-  Splitting(TetMesh& mesh, const std::vector<Asked>& asked) : mesh_(mesh), asked_(asked) {
+  Splitting(TetMesh& mesh, Openings openings) : mesh_(mesh), openings_(std::move(openings)) {
     const std::vector<HalfFace> across = half_face_neighbors(mesh.tets, mesh.points.size());
     std::vector<char> is_split(across.size(), 0);
     const FaceTable table = half_face_table(mesh.tets, mesh.points.size());
     for (std::uint32_t f = 0; f < mesh.interfaces.size(); ++f) {
-      if (place_of(patch_at(mesh.interface_patch, f)) == asked.size()) continue;
-      Opened opened{f, kNone, kNone};
-      for (const FaceTable::Entry& e : table.group_of(mesh.interfaces[f])) {
+      const auto around = table.group_of(mesh.interfaces[f]);
+      const std::uint32_t opening = openings_.find(
+          patch_at(mesh.interface_patch, f), region_at(mesh, around[0].face / 4), region_at(mesh, around[1].face / 4));
+      if (opening == openings_.list.size()) continue;
+      Opened opened{f, opening, kNone, kNone};
+      for (const FaceTable::Entry& e : around) {
         is_split[e.face] = 1;
         // The element that looks out as the triangle does lies behind it.
         const bool behind =
             is_even(face_of(mesh.tets[e.face / 4], static_cast<int>(e.face % 4))) == is_even(mesh.interfaces[f]);
         (behind ? opened.minus : opened.plus) = e.face;
       }
+      const std::uint32_t first = openings_.list[opening].first_region;
+      if (first != kNone && region_at(mesh, opened.plus / 4) != first) std::swap(opened.plus, opened.minus);
       opened_.push_back(opened);
     }
     copies_.emplace(mesh, across, is_split);
@@ -341,21 +446,18 @@ class Splitting {
   /// The faces become boundary, at its end: first those of the elements in front, then those behind.
   void open_faces(const TetMesh& before) {
     if (mesh_.patch.empty()) mesh_.patch.assign(mesh_.boundary.size(), 0);
-    const std::uint32_t first = name_sides();
-    const auto side = [&](const Opened& o, std::uint32_t of) {
-      const std::size_t place = place_of(patch_at(before.interface_patch, o.interface));
-      return first + 2 * static_cast<std::uint32_t>(place) + of;
-    };
+    name_sides();
     const auto add = [&](HalfFace h, std::uint32_t patch) {
       mesh_.boundary.push_back(face_of(mesh_.tets[h / 4], static_cast<int>(h % 4)));
       mesh_.patch.push_back(patch);
       if (!mesh_.source.empty()) mesh_.source.push_back(kNone);
     };
-    for (const Opened& o : opened_) add(o.plus, side(o, 0));
-    for (const Opened& o : opened_) add(o.minus, side(o, 1));
+    const auto sides = [&](const Opened& o) { return openings_.list[o.opening].patches; };
+    for (const Opened& o : opened_) add(o.plus, sides(o)[0]);
+    for (const Opened& o : opened_) add(o.minus, sides(o)[1]);
     for (const Opened& o : opened_) {
-      SplitFace pair{{}, side(o, 0)};
-      const Triangle& tri = before.interfaces[o.interface];
+      SplitFace pair{{}, sides(o)[0]};
+      const Triangle tri = face_of(before.tets[o.minus / 4], static_cast<int>(o.minus % 4));
       for (std::size_t i = 0; i < 3; ++i) {
         pair.nodes[i] = copies_->at(o.minus / 4, tri[i]);
         pair.nodes[3 + i] = copies_->at(o.plus / 4, tri[i]);
@@ -365,25 +467,29 @@ class Splitting {
     std::stable_sort(mesh_.split_faces.begin(), mesh_.split_faces.end(),
                      [](const SplitFace& a, const SplitFace& b) { return a.patch < b.patch; });
     drop_interfaces(before);
+    note_contacts();
   }
 
-  /// Which of those asked for a patch belongs to; their number: none.
-  std::size_t place_of(std::uint32_t patch) const {
-    const auto has = [&](const Asked& a) {
-      return std::find(a.patches.begin(), a.patches.end(), patch) != a.patches.end();
-    };
-    return static_cast<std::size_t>(std::find_if(asked_.begin(), asked_.end(), has) - asked_.begin());
-  }
-
-  /// Adds the names of both sides of each, the one in front first; returns the number of the first.
-  std::uint32_t name_sides() {
+  /// New patches come behind the others, the first side of each opening before its second.
+  void name_sides() {
     auto next = static_cast<std::uint32_t>(mesh_.patch_names.size());
     for (const auto* patch : {&mesh_.patch, &mesh_.interface_patch})
       for (const std::uint32_t p : *patch) next = std::max(next, p + 1);
-    mesh_.patch_names.resize(next);
-    for (const Asked& a : asked_)
-      for (const char* side : {"_plus", "_minus"}) mesh_.patch_names.push_back(a.name + side);
-    return next;
+    for (Opening& opening : openings_.list)
+      for (std::size_t side = 0; side < 2; ++side) {
+        if (opening.patches[side] == kNone) opening.patches[side] = next++;
+        mesh_.patch_names.resize(next);
+        mesh_.patch_names[opening.patches[side]] = opening.names[side];
+      }
+  }
+
+  void note_contacts() {
+    std::vector<char> is_open(openings_.list.size(), 0);
+    for (const Opened& o : opened_) is_open[o.opening] = 1;
+    for (std::size_t i = 0; i < is_open.size(); ++i)
+      if (const auto [first, second] = openings_.list[i].patches; is_open[i])
+        mesh_.opened_contacts.push_back({first, second, 1});
+    std::ranges::stable_sort(mesh_.opened_contacts, {}, &OpenedContact::first);
   }
 
   void drop_interfaces(const TetMesh& before) {
@@ -470,6 +576,8 @@ class Splitting {
           members.push_back(m);
         else if (face_now_[f] != kNone)
           members.push_back(static_cast<std::uint32_t>(mesh_.boundary.size()) + face_now_[f]);
+        else
+          for (const std::size_t side : {0, 1}) members.push_back(side_now(before, f, side));
       }
       std::sort(members.begin(), members.end());
       set.members = std::move(members);
@@ -477,8 +585,14 @@ class Splitting {
     std::erase_if(mesh_.sets, [](const NamedSet& set) { return set.members.empty(); });
   }
 
+  /// The face of the boundary that a side of an opened interface has become.
+  std::uint32_t side_now(const TetMesh& before, std::size_t interface, std::size_t side) const {
+    const auto at = std::ranges::lower_bound(opened_, interface, {}, &Opened::interface) - opened_.begin();
+    return static_cast<std::uint32_t>(before.boundary.size() + side * opened_.size() + static_cast<std::size_t>(at));
+  }
+
   TetMesh& mesh_;
-  const std::vector<Asked>& asked_;
+  Openings openings_;
   std::vector<Opened> opened_;
   std::size_t closed_ = 0;
   std::optional<NodeCopies> copies_;
@@ -493,7 +607,20 @@ std::vector<std::string> split_patches(TetMesh& mesh, const std::vector<std::str
   for (std::size_t f = 0; f < mesh.interfaces.size(); ++f) note_inside(inside, patch_at(mesh.interface_patch, f));
   const std::vector<Asked> asked = asked_for(places, mesh.patch_names, inside);
   if (asked.empty()) return {};
-  return {Splitting(mesh, asked).apply()};
+  return {Splitting(mesh, openings_of(asked)).apply()};
+}
+
+std::vector<std::string> split_contacts(TetMesh& mesh, const std::vector<std::uint32_t>& patches) {
+  Openings openings = openings_of(mesh, patches);
+  if (openings.list.empty()) return {};
+  const std::string count = counted(openings.list.size(), "contact");
+  return {fmt::format("{} opened: {}", count, Splitting(mesh, std::move(openings)).apply())};
+}
+
+std::vector<std::uint32_t> contacts_of(const TetMesh& mesh) {
+  std::set<std::uint32_t> patches;
+  for (const auto& [key, faces] : faces_of_contacts(mesh)) patches.insert(key[0]);
+  return {patches.begin(), patches.end()};
 }
 
 void check_split(const SurfaceMesh& complex, const std::vector<std::string>& places) {

@@ -48,6 +48,7 @@ void visit_mesh_array(Mesh& mesh, std::string_view name, const Visit& visit) {
   if (name == "wide_cells") return visit(mesh.wide_cells);
   if (name == "wide_faces") return visit(mesh.wide_faces);
   if (name == "split_faces") return visit(mesh.split_faces);
+  if (name == "opened_contacts") return visit(mesh.opened_contacts);
   if (name == "periods") return visit(mesh.periods);
   if (name == "period_rotations") return visit(mesh.period_rotations);
   if (name == "periodic_nodes") return visit(mesh.periodic_nodes);

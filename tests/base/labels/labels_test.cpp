@@ -36,6 +36,7 @@ std::vector<TetMesh> rich_meshes() {
   mesh.periods = {{4, 0, 0}};
   mesh.periodic_nodes = {{0, 120, 20}, {0, 124, 24}};
   mesh.split_faces = {{{0, 1, 5, 25, 26, 30}, 1}};
+  mesh.opened_contacts = {{0, 1, 0}};
   return {mesh, mixed};
 }
 

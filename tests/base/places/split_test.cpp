@@ -138,10 +138,78 @@ TEST(Split, SetsAndCurvesHaveTheCopies) {
   const std::size_t edges = mesh.curve_edges.size();
   ASSERT_GT(edges, 0U);
   split_patches(mesh, {"wall_1"});
-  ASSERT_EQ(mesh.sets.size(), 1U);
+  ASSERT_EQ(mesh.sets.size(), 2U);
   EXPECT_EQ(mesh.sets[0].members.size(), 50U);
+  EXPECT_EQ(mesh.sets[1].members.size(), 2U);
   EXPECT_EQ(mesh.curve_edges.size(), 2 * edges);
   EXPECT_EQ(first_defect(mesh), std::nullopt);
+}
+
+/// The rich mesh: left and right, which meet in a wall that has this name.
+TetMesh two_parts(const std::string& contact) {
+  TetMesh mesh = testing::rich_mesh(kSize);
+  mesh.region_names = {"left", "right"};
+  mesh.patch_names.resize(6);
+  mesh.patch_names.push_back(contact);
+  return mesh;
+}
+
+std::set<VertexIndex> nodes_of(const TetMesh& mesh, std::uint32_t region) {
+  std::set<VertexIndex> nodes;
+  for (TetIndex t = 0; t < mesh.tets.size(); ++t) {
+    if (mesh.region[t] != region) continue;
+    nodes.insert(mesh.tets[t].begin(), mesh.tets[t].end());
+    if (mesh.is_second_order()) nodes.insert(mesh.mid_nodes[t].begin(), mesh.mid_nodes[t].end());
+  }
+  return nodes;
+}
+
+TEST(Split, PartsComeApartAtAContactAndSharedNoNode) {
+  for (const bool second_order : {false, true}) {
+    TetMesh mesh = two_parts("left|right");
+    if (second_order) mesh = testing::with_mid_nodes(mesh);
+    const TetMesh before = mesh;
+    split_contacts(mesh, contacts_of(mesh));
+    EXPECT_EQ(first_defect(mesh), std::nullopt);
+    EXPECT_EQ(mesh.tets.size(), before.tets.size());
+    EXPECT_NEAR(volume(mesh), 64, 1e-9);
+    const std::set<VertexIndex> left = nodes_of(mesh, 0), right = nodes_of(mesh, 1);
+    EXPECT_EQ(left.size() + right.size(), mesh.points.size());
+    EXPECT_TRUE(std::ranges::none_of(left, [&](VertexIndex v) { return right.contains(v); }));
+  }
+}
+
+TEST(Split, BothSidesOfAContactAreCalledByTheirParts) {
+  TetMesh mesh = two_parts("left|right#2");
+  split_contacts(mesh, contacts_of(mesh));
+  ASSERT_EQ(mesh.opened_contacts.size(), 1U);
+  const auto [first, second, conforming] = mesh.opened_contacts[0];
+  EXPECT_EQ(mesh.patch_names.at(first), "left|right#2");
+  EXPECT_EQ(first, 6U);
+  EXPECT_EQ(mesh.patch_names.at(second), "right|left#2");
+  EXPECT_EQ(conforming, 1U);
+  EXPECT_EQ(faces_of(mesh, "left|right#2"), 32U);
+  EXPECT_EQ(faces_of(mesh, "right|left#2"), 32U);
+  const std::set<VertexIndex> left = nodes_of(mesh, 0);
+  for (std::size_t f = 0; f < mesh.boundary.size(); ++f)
+    if (mesh.patch[f] == first || mesh.patch[f] == second)
+      EXPECT_EQ(left.contains(mesh.boundary[f][0]), mesh.patch[f] == first);
+}
+
+TEST(Split, AContactWithANameKeepsIt) {
+  TetMesh mesh = two_parts("seat");
+  split_contacts(mesh, contacts_of(mesh));
+  EXPECT_EQ(faces_of(mesh, "seat (left|right)"), 32U);
+  EXPECT_EQ(faces_of(mesh, "seat (right|left)"), 32U);
+}
+
+TEST(Split, TheSidesOfAContactFaceEachOther) {
+  TetMesh mesh = two_parts("right|left");  // the other way round than regions have their numbers
+  split_contacts(mesh, contacts_of(mesh));
+  ASSERT_EQ(mesh.split_faces.size(), 32U);
+  for (const SplitFace& f : mesh.split_faces)
+    for (std::size_t i = 0; i < 3; ++i) EXPECT_EQ(mesh.points[f.nodes[i]], mesh.points[f.nodes[3 + i]]);
+  EXPECT_EQ(mesh.patch_names.at(6), "right|left");
 }
 
 TEST(Split, WhatIsNotInsideIsRefusedBeforeAnyChange) {
