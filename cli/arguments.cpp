@@ -143,7 +143,7 @@ class Rows {
 
   void add_text(const OptionInfo& info) {
     const auto as_it_is = [](const std::string&, const std::string& typed) { return OptionValue(typed); };
-    if (info.letter != "PLACE") {
+    if (info.letter != "PLACE" && info.letter != "CONTACT=WAY") {
       add_valued<std::string>(info, std::string(info.letter), as_it_is);
       return;
     }

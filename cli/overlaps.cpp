@@ -1,12 +1,15 @@
 #include "overlaps.h"
 
 #include <octafront/repair.h>
+#include <octafront/split.h>
 
 #include "text.h"
 
 #include <algorithm>
 #include <cstdint>
 #include <map>
+#include <set>
+#include <string>
 #include <tuple>
 #include <vector>
 
@@ -16,11 +19,14 @@ namespace octafront::cli {
 
 namespace {
 
-/// Whether a face lies on one of the two sides of what split_patches() opened.
-bool is_side(const TetMesh& mesh, std::size_t face) {
-  const std::uint32_t p = mesh.patch.empty() ? 0 : mesh.patch[face];
-  if (p >= mesh.patch_names.size()) return false;
-  return mesh.patch_names[p].ends_with("_plus") || mesh.patch_names[p].ends_with("_minus");
+/// Per patch whether it is one of the two sides of what split_patches() or split_contacts() opened.
+std::vector<char> sides_of(const TetMesh& mesh) {
+  const std::set<std::string> names(mesh.patch_names.begin(), mesh.patch_names.end());
+  std::vector<char> sides;
+  for (const std::string& name : mesh.patch_names)
+    sides.push_back(std::ranges::any_of(other_sides(name), [&](const auto& other) { return names.contains(other); }));
+  sides.resize(std::max<std::size_t>(1, sides.size()), 0);
+  return sides;
 }
 
 std::tuple<double, double, double> place_of(Vec3 p) {
@@ -35,40 +41,68 @@ class Closed {
     for (VertexIndex v = 0; v < to_.size(); ++v) to_[v] = v;
     std::map<std::tuple<double, double, double>, VertexIndex> first;
     std::map<Triangle, std::vector<std::size_t>> at;
+    const std::vector<char> sides = sides_of(mesh);
     for (std::size_t f = 0; f < gone_.size(); ++f) {
-      if (!is_side(mesh, f)) continue;
+      if (const std::uint32_t p = mesh.patch.empty() ? 0 : mesh.patch[f]; p >= sides.size() || !sides[p]) continue;
       Triangle place = mesh.boundary[f];
-      for (VertexIndex& v : place) v = to_[v] = first.try_emplace(place_of(mesh.points[v]), v).first->second;
+      for (VertexIndex& v : place) v = first.try_emplace(place_of(mesh.points[v]), v).first->second;
       std::sort(place.begin(), place.end());
       at[place].push_back(f);
     }
-    for (const auto& [place, faces] : at)
-      if (faces.size() == 2)
-        for (const std::size_t f : faces) gone_[f] = 1;
+    for (const auto& [place, faces] : at) {
+      has_open_sides_ = has_open_sides_ || faces.size() != 2;
+      if (faces.size() != 2) continue;
+      for (const std::size_t f : faces) {
+        gone_[f] = 1;
+        for (const VertexIndex v : mesh.boundary[f]) to_[v] = first.at(place_of(mesh.points[v]));
+      }
+    }
   }
   bool is_gone(std::size_t face) const { return gone_[face]; }
+  /// Whether sides of contacts have triangles of their own, which cross where they are curved.
+  bool has_open_sides() const { return has_open_sides_; }
   VertexIndex operator()(VertexIndex v) const { return to_[v]; }
 
  private:
   std::vector<VertexIndex> to_;
   std::vector<char> gone_;
+  bool has_open_sides_ = false;
 };
 
-/// The boundary, with its own vertices only, as a complex of one region: its edges may have any number of faces.
-RepairedSurface boundary_of(const TetMesh& mesh) {
+/// The faces of the boundary, without those that are gone; where sides are open, of each part that hangs together.
+std::vector<std::vector<std::size_t>> parts_of(const TetMesh& mesh, const Closed& closed) {
+  std::vector<VertexIndex> first(mesh.points.size(), 0);  // a node of the part, lower ones first
+  const auto find = [&](VertexIndex v) {
+    while (first[v] != v) v = first[v] = first[first[v]];
+    return v;
+  };
+  if (closed.has_open_sides()) {
+    for (VertexIndex v = 0; v < first.size(); ++v) first[v] = v;
+    for (const Tet& tet : mesh.tets)
+      for (const VertexIndex v : tet) {
+        const auto [low, high] = std::minmax({find(closed(tet[0])), find(closed(v))});
+        first[high] = low;
+      }
+  }
+  std::map<VertexIndex, std::vector<std::size_t>> parts;
+  for (std::size_t f = 0; f < mesh.boundary.size(); ++f)
+    if (!closed.is_gone(f)) parts[find(closed(mesh.boundary[f][0]))].push_back(f);
+  std::vector<std::vector<std::size_t>> list;
+  for (auto& [node, faces] : parts) list.push_back(std::move(faces));
+  return list;
+}
+
+/// These faces of the boundary, with their own vertices only, as a complex of one region: its edges may have any number
+/// of faces.
+RepairedSurface boundary_of(const TetMesh& mesh, const Closed& closed, const std::vector<std::size_t>& faces) {
   RepairedSurface boundary;
-  const Closed closed(mesh);
-  std::vector<VertexIndex> number(mesh.points.size(), kNone);
-  for (std::size_t f = 0; f < mesh.boundary.size(); ++f) {
-    if (closed.is_gone(f)) continue;
+  std::map<VertexIndex, VertexIndex> number;
+  for (const std::size_t f : faces) {
     Triangle t = mesh.boundary[f];
     for (VertexIndex& v : t) {
-      v = closed(v);
-      if (number[v] == kNone) {
-        number[v] = static_cast<VertexIndex>(boundary.surface.points.size());
-        boundary.surface.points.push_back(mesh.points[v]);
-      }
-      v = number[v];
+      const auto [at, is_new] = number.try_emplace(closed(v), static_cast<VertexIndex>(number.size()));
+      if (is_new) boundary.surface.points.push_back(mesh.points[at->first]);
+      v = at->second;
     }
     boundary.surface.triangles.push_back(t);
     boundary.surface.sides.push_back({kNone, 0});
@@ -103,10 +137,7 @@ std::string place_in_words(Vec3 p) {
   return fmt::format("({:.6g}, {:.6g}, {:.6g})", p.x, p.y, p.z);
 }
 
-}  // namespace
-
-std::optional<std::string> first_overlap(const TetMesh& mesh, const RunContext& context) {
-  const RepairedSurface boundary = boundary_of(mesh);
+std::optional<std::string> overlap_of(const RepairedSurface& boundary, const RunContext& context) {
   if (const Doubled doubled = doubled_faces(boundary.surface); doubled.pairs > 0)
     return fmt::format(
         "it is torn, or in two copies: {} of its boundary's faces {} at the same place with nodes of their own, the "
@@ -121,6 +152,15 @@ std::optional<std::string> first_overlap(const TetMesh& mesh, const RunContext& 
     return fmt::format("parts of it overlap: {} of its boundary {} inside of other elements, the first near {}",
                        counted(found.misplaced_parts.count, "part"), found.misplaced_parts.count == 1 ? "lies" : "lie",
                        place_in_words(found.misplaced_parts.first.front().at));
+  return std::nullopt;
+}
+
+}  // namespace
+
+std::optional<std::string> first_overlap(const TetMesh& mesh, const RunContext& context) {
+  const Closed closed(mesh);
+  for (const std::vector<std::size_t>& faces : parts_of(mesh, closed))
+    if (auto found = overlap_of(boundary_of(mesh, closed, faces), context)) return found;
   return std::nullopt;
 }
 

@@ -7,6 +7,7 @@
 #include <octafront/mend.h>
 #include <octafront/named_groups.h>
 #include <octafront/no_context.h>
+#include <octafront/split.h>
 #include <octafront/surface_mesh.h>
 
 #include <array>
@@ -53,9 +54,6 @@ struct ImageIntake {
   /// Without `resample`: bands of grey values are taken from coarser voxels, if much of them is a voxel thick and their
   /// surfaces alone make so many elements: then no other triangles follow them.
   double most_elements = HUGE_VAL;
-  /// Small contacts of labels are cleared (CleanOptions::contacts): those below an area, or "keep". Empty: below the
-  /// square of `size`, if that is given and the image is not repeated.
-  std::string contacts = {};
   /// Specks of labels are removed (CleanOptions::specks): those below this volume, >= 0. Without a value below an
   /// element of `size`, if that is given and the image is not repeated.
   std::optional<double> specks = {};
@@ -124,6 +122,12 @@ struct IntakeOptions {
   /// "matrix". "first": the first body is the cell, and repeated by its bounding box. Empty: there is none. A body by a
   /// formula ends flat at its faces; empty: one cell of the named surfaces, from the origin on.
   std::string box = {};
+  /// How parts meet: "shared", "split", "separate" (ContactChoice::all; empty: shared). Of an image also, with a comma
+  /// between, how small contacts of labels are cleared (CleanOptions::contacts): those below an area, or "keep";
+  /// without either below the square of the size, if that is given and the image is not repeated.
+  std::string contacts = {};
+  /// Rules with semicolons between (ContactChoice::Rule), "A|B=split", or files with one in each line.
+  std::string contact = {};
   ImageIntake image;
   CadIntake cad;
   InsideIntake inside;
@@ -181,6 +185,8 @@ struct Domain {
 
   /// Voxels of the image along i, j and k, as they were taken.
   std::array<std::uint32_t, 3> voxels = {0, 0, 0};
+
+  ContactChoice contacts = {};  ///< how parts meet: generate() opens contacts, or meshes parts one by one
 
   std::string unit = {};                   ///< that coordinates count, as far as that is known: of CAD
   std::string frame = {};                  ///< of an image: where x, y and z point, Image::frame

@@ -65,6 +65,14 @@ struct WallSummary {
   double needed = 0;  ///< regular triangles of SizeOptions::size that have this area
 };
 
+/// A contact that is open (TetMesh::opened_contacts).
+struct ContactSummary {
+  std::array<std::string, 2> patches;  ///< names
+  std::array<std::uint64_t, 2> triangles = {0, 0};
+  std::array<double, 2> areas = {0, 0};  ///< input unit squared
+  bool conforming = true;                ///< the triangles of both are the same
+};
+
 /// The boundary layers of one wall.
 struct LayerSummary {
   std::string patch;   ///< its name; may be empty
@@ -90,9 +98,10 @@ struct Report {
   double expected_tets = 0;            ///< predicted by the sizes before the volume is meshed
   QualitySummary quality;              ///< of the elements with straight edges
   std::vector<RegionSummary> regions;  ///< by number; empty if the mesh has only one
-  std::vector<WallSummary> walls;    ///< those with most triangles over what is needed first; empty: no size was given
-  std::vector<LayerSummary> layers;  ///< by patch; empty: none were asked for
-  SecondOrderSummary second_order;   ///< edges == 0: the mesh is linear
+  std::vector<WallSummary> walls;  ///< those with most triangles over what is needed first; empty: no size was given
+  std::vector<ContactSummary> contacts;  ///< that are open, by the number of the first patch
+  std::vector<LayerSummary> layers;      ///< by patch; empty: none were asked for
+  SecondOrderSummary second_order;       ///< edges == 0: the mesh is linear
   SizeSummary surface_edges, volume_edges;
   double wall_seconds = 0, cpu_seconds = 0;
   std::uint64_t peak_memory_bytes = 0;  ///< of the process

@@ -32,6 +32,29 @@ std::vector<std::string> split_patches(TetMesh& mesh, const std::vector<std::str
 /// the number of the patch before, and `opened_contacts` tells which belong together.
 std::vector<std::string> split_contacts(TetMesh& mesh, const std::vector<std::uint32_t>& patches);
 
+/// How parts meet in a contact.
+enum class ContactWay {
+  kShared,   ///< one face, one set of nodes
+  kSplit,    ///< opened: the same triangles on both sides, nodes doubled
+  kSeparate  ///< each part has triangles of its own, by its own sizes
+};
+
+/// What is asked of the contacts of an input; later rules come before earlier ones, and these before `all`.
+struct ContactChoice {
+  struct Rule {
+    std::string contact;  ///< `A|B` (either way round, all its pieces), a patch, or a part: all contacts of it
+    ContactWay way = ContactWay::kShared;
+  };
+  ContactWay all = ContactWay::kShared;
+  std::vector<Rule> rules = {};
+
+  bool is_shared() const { return all == ContactWay::kShared && rules.empty(); }
+};
+
+/// What the other side of an opening may be called, by the name of a patch: `fault_minus` of `fault_plus`, `B|A#2` of
+/// `A|B#2`, `seat (B|A)` of `seat (A|B)`. Names of parts may have bars, so there may be several; none: it is no side.
+std::vector<std::string> other_sides(const std::string& patch);
+
 /// The patches with faces between two regions, ascending.
 std::vector<std::uint32_t> contacts_of(const TetMesh& mesh);
 

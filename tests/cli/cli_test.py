@@ -299,6 +299,34 @@ class CommandLine(unittest.TestCase):
         self.assertEqual([p["name"] for p in info["cad_patches"]], info["places"]["patches"])
         self.assertEqual([s.get("product") for s in info["solids"]], ["plate", "bracket", "bolt", "bolt"])
 
+    def test_contacts_are_shared_split_or_separate(self):
+        self.needs_cad()
+        mesh, report = self.dir / "a.vtu", self.dir / "a.json"
+
+        def made(*options):
+            self.run_cli("mesh", SAMPLES / "assembly.step", "-o", mesh, "--size", 9, "--json", report, *options)
+            self.run_cli("check", mesh)
+            return json.loads(report.read_text())
+
+        shared, split = made(), made("--contacts", "split")
+        self.assertNotIn("opened_contacts", shared)
+        self.assertEqual(len(split["opened_contacts"]), 7)
+        self.assertIn(["seat (plate|bracket)", "seat (bracket|plate)"], [c["patches"] for c in split["opened_contacts"]])
+        self.assertEqual(split["tets"], shared["tets"])
+        self.assertGreater(split["points"], shared["points"])
+        apart = made("--contacts", "separate", "--contact", "bracket|plate=shared", "--size-of", "bolt=3")
+        self.assertEqual(len(apart["opened_contacts"]), 6)
+        self.assertFalse(any(c["conforming"] for c in apart["opened_contacts"]))
+        for region in apart["regions"]:
+            self.assertAlmostEqual(region["volume"] / region["true_volume"], 1, delta=.01)
+        rules = self.dir / "contacts.txt"
+        rules.write_text("# seat only\nplate|bracket=split\n")
+        self.assertEqual(len(made("--contact", rules)["opened_contacts"]), 1)
+        refused = self.run_cli("mesh", SAMPLES / "assembly.step", "-o", mesh, "--contact", "plate|nut=split", status=2)
+        self.assertIn('there is no contact "plate|nut"; there are "bolt hole 1"', refused.stderr)
+        refused = self.run_cli("mesh", self.part, "-o", mesh, "--contacts", "splitt", status=2)
+        self.assertIn("give shared, split or separate", refused.stderr)
+
     def test_one_name_is_one_patch_of_every_option(self):
         self.needs_cad()
         part, mesh, report = self.dir / "part.step", self.dir / "part.vtu", self.dir / "part.json"

@@ -483,6 +483,16 @@ class OneWayIn(BesideTheLine):
         with self.assertRaises(octafront.InputError):
             octafront.mesh(soup, repair="none")
 
+    def test_contacts_of_parts_are_opened(self):
+        parts = octafront.join_bodies({"a": self.block((0, 0, 0), (1, 1, 1)), "b": self.block((1, 0, 0), (3, 1, 1))})
+        self.assertEqual(octafront.mesh(parts, size=.5).opened_contacts, [])
+        for way, conforming in (("split", True), ("separate", False)):
+            mesh = octafront.mesh(parts, size=.5, contacts=way)
+            self.assertEqual(mesh.opened_contacts, [("a_b (a|b)", "a_b (b|a)", conforming)])
+            self.assertEqual(mesh.report["opened_contacts"][0]["conforming"], conforming)
+        with self.assertRaisesRegex(octafront.OptionError, "there is no contact"):
+            octafront.mesh(parts, size=.5, contact="a|c=split")
+
     def test_two_bodies(self):
         plate, pin = Complexes.block((0, 0, 0), (1, 1, 1)), Complexes.block((.25, .25, 1), (.75, .75, 1.5))
         files = [self.folder / "plate.off", self.folder / "pin.off"]

@@ -67,6 +67,22 @@ std::vector<Row<IntakeOptions>> material_rows() {
               .without("what facets explain, or a tenth of the size; of repair a thousandth of the diagonal")
               .also(kWithSurfaces),
           [](auto& o) -> auto& { return o.complex.tolerance; }),
+      intake_row(
+          about_intake("contacts", kGroup,
+                       "How parts meet. shared: by the same nodes; split: nodes are doubled, the sides are the patches "
+                       "A|B and B|A; separate: each part has triangles of its own, by its own sizes. Of an image also: "
+                       "where labels touch in spots below this area, or in strips of a voxel or two, a label beside "
+                       "them comes between; keep: they stay. Two with a comma between")
+              .takes("shared|split|separate|A|keep")
+              .without("shared; of images the square of the size, if one is given")
+              .also("check"),
+          [](auto& o) -> auto& { return o.contacts; }),
+      intake_row(
+          about_intake("contact", kGroup,
+                       "The same for one contact, A|B=split, or all of one part, A=separate; several with semicolons "
+                       "between, or a file with one in each line")
+              .takes("CONTACT=WAY"),
+          [](auto& o) -> auto& { return o.contact; }),
   };
 }
 
@@ -161,14 +177,6 @@ std::vector<Row<IntakeOptions>> image_rows() {
               .without("an element of the size, if one is given")
               .also("check"),
           [](auto& o) -> auto& { return o.image.specks; }),
-      intake_row(
-          about_intake("contacts", kGroup,
-                       "Where labels touch in spots below this area, or in strips of a voxel or two, a label beside "
-                       "them comes between; keep: they stay")
-              .takes("A|keep")
-              .without("the square of the size, if one is given")
-              .also("check"),
-          [](auto& o) -> auto& { return o.image.contacts; }),
       intake_row(
           about_intake("close_voxels", kGroup,
                        "Gaps of regions toward the outside close that are up to twice as many voxels wide")

@@ -1,5 +1,6 @@
 #include <octafront/error.h>
 #include <octafront/named_groups.h>
+#include <octafront/split.h>
 #include <octafront/surface_mesh.h>
 
 #include "base/mesh/complex.h"
@@ -62,6 +63,11 @@ bool is_made_later(const std::string& name) {
   return is_number || name.starts_with("patch_") || name.ends_with("_plus") || name.ends_with("_minus");
 }
 
+/// "seat" of "seat (A|B)", a side of a contact that is opened.
+std::string without_sides(const std::string& name) {
+  return other_sides(name).empty() || !name.ends_with(')') ? name : name.substr(0, name.rfind(" ("));
+}
+
 }  // namespace
 
 GroupRule group_rule(const std::string& text) {
@@ -110,7 +116,7 @@ void check_group(const SurfaceMesh& surface, const GroupRule& rule) {
     is_there[patch] = 1;
   }
   for (const std::string& name : *wanted)
-    if (!is_made_later(name)) patches_called("group", divided.patch_names, is_there, name);
+    if (!is_made_later(name)) patches_called("group", divided.patch_names, is_there, without_sides(name));
 }
 
 std::string add_group(TetMesh& mesh, const GroupRule& rule) {

@@ -9,6 +9,7 @@
 
 #include "base/mesh/edge_table.h"
 
+#include <array>
 #include <cstdint>
 #include <span>
 #include <string>
@@ -45,6 +46,10 @@ std::string patch_label(const std::vector<std::string>& names, std::uint32_t pat
 std::vector<std::uint32_t> named_so(const std::vector<std::string>& names, const std::string& name);
 /// A name that named_so() takes for this one alone.
 std::string alone(const std::vector<std::string>& names, const std::string& name);
+
+/// What the sides of a contact of parts a and b are called: "A|B" of A's and "B|A" of B's, with what stands behind it
+/// ("#2") or around it; "seat (A|B)" and "seat (B|A)" of one that has a name of its own.
+std::array<std::string, 2> names_of_sides(const std::string& name, const std::string& a, const std::string& b);
 
 /// The patches among the first ones, `is_there`, that are called so: by name, as named_so() says; else by number, from
 /// 1, or as "patch_3". None if there is none.

@@ -102,22 +102,6 @@ std::map<FaceKey, std::vector<std::uint32_t>> faces_of_contacts(const TetMesh& m
   return faces;
 }
 
-/// "A|B" of A's side and "B|A" of B's, with what stands behind it ("#2") or around it.
-std::array<std::string, 2> names_of_sides(const std::string& name, const std::string& a, const std::string& b) {
-  const std::array<std::string, 2> pairs{a + "|" + b, b + "|" + a};
-  for (const std::string& pair : pairs) {
-    const std::size_t at = name.find(pair);
-    if (at == name.npos) continue;
-    const std::string before = name.substr(0, at), behind = name.substr(at + pair.size());
-    const bool is_piece =
-        behind.empty() || (behind[0] == '#' && behind.find_first_not_of("0123456789", 1) == name.npos);
-    if ((before.empty() && is_piece) || (before.ends_with('(') && behind == ")"))
-      return {before + pairs[0] + behind, before + pairs[1] + behind};
-  }
-  if (name.empty()) return pairs;
-  return {name + " (" + pairs[0] + ")", name + " (" + pairs[1] + ")"};
-}
-
 /// With a number behind it where another patch is called so.
 std::string not_taken(const std::string& name, std::set<std::string>& taken) {
   std::string tried = name;
@@ -319,6 +303,7 @@ class Splitting {
     std::vector<std::vector<std::uint32_t>> edges = move_curves();
     move_elements();
     move_faces(before);
+    move_split_faces(before);
     open_faces(before);
     move_wide(before);
     move_periodic(before);
@@ -468,6 +453,18 @@ class Splitting {
                      [](const SplitFace& a, const SplitFace& b) { return a.patch < b.patch; });
     drop_interfaces(before);
     note_contacts();
+  }
+
+  /// Faces that were split before have the nodes of their elements.
+  void move_split_faces(const TetMesh& before) {
+    if (mesh_.split_faces.empty()) return;
+    const FaceTable faces = face_table(copies_->old_points(), before.boundary);
+    for (SplitFace& face : mesh_.split_faces)
+      for (const std::size_t first : {0, 3}) {
+        const auto nodes = std::span(face.nodes).subspan(first, 3);
+        const TetIndex at = where_[faces.group_of({nodes[0], nodes[1], nodes[2]}).front().face];
+        for (VertexIndex& v : nodes) v = at == kNone ? copies_->self(v) : copies_->at(at, v);
+      }
   }
 
   /// New patches come behind the others, the first side of each opening before its second.

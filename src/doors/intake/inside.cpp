@@ -115,6 +115,7 @@ Domain with_inside(Domain domain, const IntakeOptions& options, const RunContext
   Inside inside(domain, options, context);
   inside.read();
   inside.embed();
+  if (ContactChoice asked = contacts_asked(options).of_parts; !asked.is_shared()) domain.contacts = std::move(asked);
   return domain;
 }
 

@@ -7,6 +7,7 @@
 
 #include "soup/cells/misfit.h"
 
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -51,6 +52,16 @@ Domain with_inside(Domain domain, const IntakeOptions& options, const RunContext
 void refuse_formula_options(const FormulaIntake& formula, const std::string& name);
 
 /// Throws OptionError if something is asked of images, for an input `name` that is none.
-void refuse_image_options(const ImageIntake& image, const std::string& name);
+void refuse_image_options(const IntakeOptions& options, const std::string& name);
+
+/// What IntakeOptions::contacts and `contact` say.
+struct ContactsAsked {
+  std::string of_labels;  ///< an area, or "keep"; empty: nothing
+  ContactChoice of_parts;
+};
+/// The area that a text says; nullopt: it says none.
+std::optional<double> area_in(const std::string& text);
+/// Throws OptionError for what is neither; InputError for a file that says something else.
+ContactsAsked contacts_asked(const IntakeOptions& options);
 
 }  // namespace octafront::intake

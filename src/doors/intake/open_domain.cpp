@@ -358,7 +358,7 @@ Domain open_domain(const std::vector<std::string>& files, const IntakeOptions& o
     const Image image = read_image(files, options.image.choice, context);
     return with_inside(Intake(options, context).image(image, files.front()), options, context);
   }
-  refuse_image_options(options.image, files.front());
+  refuse_image_options(options, files.front());
   Intake intake(options, context);
   if (is_cad(files.front())) {
     if (files.size() > 1) throw OptionError(fmt::format("{}: give one CAD file; its solids are the regions", files[0]));
@@ -373,13 +373,13 @@ Domain open_domain(const std::string& file, const IntakeOptions& options, const 
 }
 
 Domain open_domain(Domain input, const IntakeOptions& options, const RunContext& context) {
-  refuse_image_options(options.image, "a surface");
+  refuse_image_options(options, "a surface");
   if (input.geometry) return with_inside(std::move(input), options, context);
   return with_inside(Intake(options, context).surface({"", std::move(input), {}, {}}), options, context);
 }
 
 Domain open_domain(std::vector<Body> bodies, const IntakeOptions& options, const RunContext& context) {
-  refuse_image_options(options.image, "a surface");
+  refuse_image_options(options, "a surface");
   return with_inside(Intake(options, context).bodies(std::move(bodies)), options, context);
 }
 

@@ -223,7 +223,7 @@ Domain open_formula(const std::string& formula, const IntakeOptions& options, co
   const double period = options.formula.cell.value_or(1);
   Formula read(formula, period);
   const Cells cells = cells_of(options, read.is_periodic(), period);
-  intake::refuse_image_options(options.image, "a formula");
+  intake::refuse_image_options(options, "a formula");
   return opened(std::make_shared<formulas::FormulaFunction>(std::move(read), kStepOfCell * cells.largest()), cells,
                 "a formula", options, context);
 }
@@ -241,7 +241,7 @@ Domain open_samples(const SampledFunction& samples, const IntakeOptions& options
         fmt::format("{} samples, but the cells and a layer around them have {}", samples.values.size(), count));
   for (const double value : samples.values)
     if (!std::isfinite(value)) throw InputError(fmt::format("a sample is {}: all must be finite", value));
-  intake::refuse_image_options(options.image, "a function");
+  intake::refuse_image_options(options, "a function");
   const Cells cells{samples.box, samples.size};
   return opened(std::make_shared<formulas::SampledSpace>(samples), cells, "samples of a function", options, context);
 }

@@ -139,18 +139,13 @@ std::optional<Image> with_whole_labels(const Image& image) {
 }
 
 /// `repeats`: what is changed at one face of a cell would have to change at the opposite one.
-double area_of_contacts(const Image& image, const ImageRegions& regions, const ImageIntake& asked, bool repeats) {
-  if (asked.contacts == "keep" || (repeats && asked.contacts.empty())) return 0;
+double area_of_contacts(const Image& image, const ImageRegions& regions, const IntakeOptions& options, bool repeats) {
+  const std::string asked = contacts_asked(options).of_labels;
+  if (asked == "keep" || (repeats && asked.empty())) return 0;
   if (repeats) throw OptionError("`contacts` are not cleared in an image that is repeated: give keep, or leave it out");
-  if (!asked.contacts.empty()) {
-    double area = -1;
-    const char* const end = asked.contacts.data() + asked.contacts.size();
-    if (io::double_from_chars(asked.contacts.data(), end, area).ptr != end || !(area >= 0))
-      throw OptionError(fmt::format("`contacts` is \"{}\": give an area from 0 on, or keep", asked.contacts));
-    return area;
-  }
+  if (!asked.empty()) return *area_in(asked);
   if (kind_of(image, regions) != ImageRegions::Kind::kLabels) return 0;
-  const double size = asked.size.value_or(0);
+  const double size = options.image.size.value_or(0);
   return size * size;
 }
 
@@ -174,7 +169,8 @@ void check_cleaning(const ImageIntake& asked) {
 
 }  // namespace
 
-void refuse_image_options(const ImageIntake& image, const std::string& name) {
+void refuse_image_options(const IntakeOptions& options, const std::string& name) {
+  const ImageIntake& image = options.image;
   const LabelOptions& labels = image.regions.labels;
   const CleanOptions& clean = image.regions.clean;
   const bool has_surfaces = !image.surface_files.empty() || !image.regions.surfaces.empty();
@@ -190,7 +186,7 @@ void refuse_image_options(const ImageIntake& image, const std::string& name) {
                                                 {clean.holes > 0, "holes"},
                                                 {image.specks || clean.specks > 0, "specks"},
                                                 {clean.closing > 0, "close_voxels"},
-                                                {!image.contacts.empty(), "contacts"},
+                                                {!contacts_asked(options).of_labels.empty(), "contacts"},
                                                 {!image.regions.closed_at_box, "closed_at_box"},
                                                 {crops(image), "crop"},
                                                 {!image.resample.empty(), "resample"}};
@@ -213,7 +209,7 @@ void take_image(Domain& domain, const IntakeOptions& options, const Image& image
   const std::array<bool, 3> repeated = axes_named("repeat", options.repeat.value_or(""));
   const bool repeats = std::ranges::any_of(repeated, [](bool along) { return along; });
   if (regions.clean.specks == 0) regions.clean.specks = volume_of_specks(used, regions, options.image, repeats);
-  if (regions.clean.contacts == 0) regions.clean.contacts = area_of_contacts(used, regions, options.image, repeats);
+  if (regions.clean.contacts == 0) regions.clean.contacts = area_of_contacts(used, regions, options, repeats);
   domain.format = image.format;
   domain.frame = image.frame;
   domain.voxel_spacing = smallest_spacing(used.grid);

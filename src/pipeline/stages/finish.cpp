@@ -9,6 +9,7 @@
 #include "pipeline/inside/fins.h"
 #include "pipeline/stages/adapting.h"
 #include "pipeline/stages/agreement.h"
+#include "pipeline/stages/contact_choice.h"
 #include "pipeline/stages/found_shapes.h"
 #include "pipeline/stages/kept_shape.h"
 #include "pipeline/stages/kept_volumes.h"
@@ -60,20 +61,9 @@ void split(const Finishing& f) {
   check_result(mesh, nullptr, f.run);
 }
 
-/// In the place of the sets that name_parts() made of what has no name.
-void add_groups(const Finishing& f) {
-  TetMesh& mesh = f.filled.mesh;
-  f.run.stage("groups", [&](const Stage& stage) {
-    const std::vector<std::string>& groups = options_of(f).groups;
-    std::vector<std::string> found;
-    if (f.input.geometry) found = places_without_names(*f.input.geometry, groups, mesh);
-    const auto before = std::ssize(mesh.sets);
-    for (const std::string& group : groups)
-      if (std::string note = add_group(mesh, group_rule(group)); !note.empty()) stage.note(std::move(note));
-    const auto is_found = [&](const NamedSet& set) { return std::ranges::find(found, set.name) != found.end(); };
-    const auto first_new = mesh.sets.begin() + before;
-    mesh.sets.erase(std::remove_if(mesh.sets.begin(), first_new, is_found), first_new);
-  });
+void open_contacts(const Finishing& f) {
+  f.run.stage("contacts", [&](const Stage& stage) { open_contacts(f.domain, f.filled.mesh, stage); });
+  check_result(f.filled.mesh, nullptr, f.run);
 }
 
 /// One thing that may be done to an improved mesh.
@@ -126,7 +116,9 @@ constexpr std::array kFeatures{
     Feature{[](Of f) { return f.fins != nullptr; }, kWantsAll, put_fins_in_place},
     Feature{[](Of f) { return !f.domain.sets.empty(); }, kWantsAll, place_sets},
     Feature{[](Of f) { return !options_of(f).split.empty(); }, kWantsAll, split},
-    Feature{[](Of f) { return !options_of(f).groups.empty(); }, kWantsAll, add_groups},
+    Feature{[](Of f) { return !f.domain.contacts.is_shared(); }, kWantsAll, open_contacts},
+    Feature{[](Of f) { return !options_of(f).groups.empty(); }, kWantsAll,
+            [](Of f) { add_groups(f.input.geometry, f.filled.mesh, f.run); }},
     // Looked at when all runs that it takes are done.
     Feature{[](Of f) { return requires_something(options_of(f).require); }, kWantsAll, [](Of) {}},
 };
@@ -141,6 +133,20 @@ std::optional<NarrowPlace> narrow_place_of(const Finishing& f, std::uint64_t tet
 }
 
 }  // namespace
+
+void add_groups(const TrueGeometry* geometry, TetMesh& mesh, Run& run) {
+  run.stage("groups", [&](const Stage& stage) {
+    const std::vector<std::string>& groups = run.options.groups;
+    std::vector<std::string> found;
+    if (geometry != nullptr) found = places_without_names(*geometry, groups, mesh);
+    const auto before = std::ssize(mesh.sets);
+    for (const std::string& group : groups)
+      if (std::string note = add_group(mesh, group_rule(group)); !note.empty()) stage.note(std::move(note));
+    const auto is_found = [&](const NamedSet& set) { return std::ranges::find(found, set.name) != found.end(); };
+    const auto first_new = mesh.sets.begin() + before;
+    mesh.sets.erase(std::remove_if(mesh.sets.begin(), first_new, is_found), first_new);
+  });
+}
 
 void finish(const Finishing& made) {
   if (std::ranges::any_of(kFeatures, [&](const Feature& f) { return f.wants_all && f.is_asked(made); }))

@@ -22,6 +22,10 @@ struct Finishing {
 /// them all. Throws OptionError for names that are not there, MeshingError for what is too far from the input.
 void finish(const Finishing& made);
 
+/// Adds the sets that Options::groups asks for, in the place of those that name_parts() made of what has no name.
+/// `geometry`: null, if it is not known.
+void add_groups(const TrueGeometry* geometry, TetMesh& mesh, Run& run);
+
 /// What the report says of the mesh when it is finished.
 void describe(const Finishing& made);
 

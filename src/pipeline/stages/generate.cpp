@@ -10,6 +10,7 @@
 #include "base/shared/shared_tets.h"
 #include "pipeline/inside/fins.h"
 #include "pipeline/stages/agreement.h"
+#include "pipeline/stages/contact_choice.h"
 #include "pipeline/stages/finish.h"
 #include "pipeline/stages/kept_shape.h"
 #include "pipeline/stages/kept_volumes.h"
@@ -163,12 +164,17 @@ Result generate_freely(const Domain& domain, const Options& asked, const RunCont
 }  // namespace
 
 Result generate(const Domain& domain, const Options& asked, const RunContext& context) {
+  if (const std::vector<PartContact> contacts = contacts_of(domain); come_apart(contacts))
+    return generate_apart(domain, contacts, asked, context,
+                          [&](const Domain& part, const Options& options) { return generate(part, options, context); });
   Result made = generate_freely(domain, asked, context);
   require_of(made.mesh, longest_edge(made.mesh, made.sizes, asked.require), asked.require, made.report);
   return made;
 }
 
 SurfaceResult generate_surface(const Domain& domain, const Options& asked, const RunContext& context) {
+  if (!domain.contacts.is_shared())
+    throw OptionError("`contacts`: contacts are opened in a mesh of tetrahedra; a surface has shared ones");
   const Options options = suited(domain, asked);
   Run run(options, context);
   const Prepared input = prepare(domain, run);

@@ -7,6 +7,7 @@
 
 #include "base/core/parallel.h"
 #include "base/core/utf8.h"
+#include "base/geometry/measures.h"
 #include "base/mesh/complex.h"
 #include "base/mesh/complex_patches.h"
 #include "base/mesh/feature_patches.h"
@@ -37,6 +38,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <map>
 #include <optional>
 
 #include <fmt/core.h>
@@ -561,7 +563,28 @@ SurfaceMesh boundary_of(const TetMesh& mesh) {
   return {mesh.points, mesh.boundary, mesh.patch, {}, {}};
 }
 
+namespace {
+
+void describe_contacts(const TetMesh& mesh, Report& report) {
+  std::map<std::uint32_t, std::pair<std::uint64_t, double>> of;  // per patch triangles, area
+  report.contacts.clear();
+  if (mesh.opened_contacts.empty()) return;
+  for (std::size_t f = 0; f < mesh.patch.size(); ++f) {
+    const auto& [a, b, c] = mesh.boundary[f];
+    auto& [triangles, area] = of[mesh.patch[f]];
+    ++triangles, area += triangle_area(mesh.points[a], mesh.points[b], mesh.points[c]);
+  }
+  for (const auto& [first, second, conforming] : mesh.opened_contacts)
+    report.contacts.push_back({{mesh.patch_names[first], mesh.patch_names[second]},
+                               {of[first].first, of[second].first},
+                               {of[first].second, of[second].second},
+                               conforming != 0});
+}
+
+}  // namespace
+
 void describe(const TetMesh& mesh, Report& report, const Comm& comm) {
+  describe_contacts(mesh, report);
   report.points = mesh.points.size();
   report.boundary_faces = mesh.boundary.size();
   report.volume = mesh.is_second_order() ? curved_volume(mesh) : enclosed_volume(boundary_of(mesh));

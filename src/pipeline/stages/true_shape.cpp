@@ -12,6 +12,7 @@
 
 #include <algorithm>
 #include <map>
+#include <set>
 #include <utility>
 
 #include <fmt/core.h>
@@ -89,10 +90,26 @@ NamedSet elements_of(const PartGroup& group, const TetMesh& mesh) {
   return set;
 }
 
-/// A sentence for the parts that no face of the mesh lies in; empty if there are none.
-std::string parts_without_faces(const std::vector<std::string>& names, const TetMesh& mesh) {
+/// Per part whether the surface has a triangle of its patch: of a file whose solids are meshed one by one not all do.
+std::vector<char> parts_of_surface(const TrueGeometry& geometry, const SurfaceMesh& surface) {
+  std::set<std::string> patches;
+  for (std::size_t t = 0; t < surface.triangles.size(); ++t)
+    if (const std::uint32_t p = surface.patch_of(t); p < surface.patch_names.size())
+      patches.insert(surface.patch_names[p]);
+  std::vector<char> has;
+  for (std::uint32_t part = 0; part < geometry.part_names().size(); ++part) {
+    const std::uint32_t patch = geometry.patch_of_part(part);
+    has.push_back(patch == kNone || patches.contains(geometry.patch_names()[patch]));
+  }
+  return has;
+}
+
+/// A sentence for the parts of the surface that no face of the mesh lies in; empty if there are none.
+std::string parts_without_faces(const TrueGeometry& geometry, const SurfaceMesh& surface, const TetMesh& mesh) {
   constexpr std::size_t kFew = 5;
-  std::vector<char> is_there(names.size(), 0);
+  const std::vector<std::string>& names = geometry.part_names();
+  std::vector<char> is_there = parts_of_surface(geometry, surface);
+  for (char& there : is_there) there = !there;
   for (const auto* parts : {&mesh.patch, &mesh.interface_patch})
     for (const std::uint32_t part : *parts)
       if (part < names.size()) is_there[part] = 1;
@@ -136,7 +153,7 @@ void name_parts(const Prepared& input, Filled& filled, Run& run) {
   name_parts_of(*input.geometry, mesh.points, boundary.surface.triangles, boundary.surface.patch);
   if (grown) name_parts_of(*input.geometry, mesh.points, grown->ground.triangles, grown->ground.patch);
   const TrueGeometry& geometry = *input.geometry;
-  if (std::string missing = parts_without_faces(geometry.part_names(), mesh); !missing.empty())
+  if (std::string missing = parts_without_faces(geometry, input.surface.mesh(), mesh); !missing.empty())
     run.report.stages.back().notes.push_back(std::move(missing));
   for (const PartGroup& group : geometry.groups()) {
     NamedSet set = group.parts.empty() ? elements_of(group, mesh) : faces_of(group, mesh);

@@ -81,6 +81,14 @@ Json json_of(const std::vector<WallSummary>& walls) {
   return all;
 }
 
+Json json_of(const std::vector<ContactSummary>& contacts) {
+  Json all = Json::array();
+  for (const ContactSummary& c : contacts)
+    all.push_back(
+        {{"patches", c.patches}, {"triangles", c.triangles}, {"areas", c.areas}, {"conforming", c.conforming}});
+  return all;
+}
+
 Json json_of(const SizeSummary& s) {
   return {{"edges", s.edges}, {"mean_ratio", s.mean_ratio}, {"share_within_0.7_1.4", s.share_within}};
 }
@@ -134,6 +142,7 @@ std::string to_json(const Report& report) {
     j["quality"] = json_of(report.quality);
     if (!report.regions.empty()) j["regions"] = json_of(report.regions);
     if (!report.walls.empty()) j["walls"] = json_of(report.walls);
+    if (!report.contacts.empty()) j["opened_contacts"] = json_of(report.contacts);
     if (!report.layers.empty()) j["layers"] = json_of(report.layers);
     if (report.second_order.edges > 0) j["second_order"] = json_of(report.second_order);
     j["volume_edges"] = json_of(report.volume_edges);

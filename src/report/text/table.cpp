@@ -159,6 +159,15 @@ std::string wall_lines(const std::vector<WallSummary>& walls) {
              : fmt::format("{:<62}{:>12}{:>12}\n", "walls with most over the size", "triangles", "by size") + out;
 }
 
+std::string contact_lines(const std::vector<ContactSummary>& contacts) {
+  std::string out = fmt::format("{:<62}{:>12}{:>12}\n", "opened contacts", "triangles", "beyond");
+  for (const ContactSummary& c : std::span(contacts).first(std::min(contacts.size(), kMostRegionLines)))
+    out += fmt::format("  {:<60.60}{:>12}{:>12}\n", c.patches[0], grouped(c.triangles[0]), grouped(c.triangles[1]));
+  if (contacts.size() > kMostRegionLines)
+    out += fmt::format("  ... and {} more: all of them are in the JSON report\n", contacts.size() - kMostRegionLines);
+  return out;
+}
+
 std::string size_line(const char* what, const SizeSummary& s) {
   return fmt::format("  {:<16}mean {:.3f} of the length wanted, {:.1f} % within 0.7 - 1.4\n", what, s.mean_ratio,
                      100 * s.share_within);
@@ -175,6 +184,7 @@ std::string to_table(const Report& report) {
   if (report.boundary_faces > 0) out += volume_line(report);
   if (report.tets > 0) out.append("\n").append(quality_lines(report.quality));
   if (report.regions.size() > 1) out += region_lines(report.regions) + wall_lines(report.walls);
+  if (!report.contacts.empty()) out += contact_lines(report.contacts);
   if (!report.layers.empty()) out += layer_lines(report.layers);
   if (report.second_order.edges > 0) out += second_order_lines(report.second_order);
   if (report.surface_edges.edges > 0) out += "edge lengths\n" + size_line("surface", report.surface_edges);

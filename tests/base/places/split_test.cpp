@@ -212,6 +212,31 @@ TEST(Split, TheSidesOfAContactFaceEachOther) {
   EXPECT_EQ(mesh.patch_names.at(6), "right|left");
 }
 
+TEST(Split, WhatWasSplitBeforeKeepsItsPairs) {
+  TetMesh mesh = with_walls({{0, 2, 0, 4}, {1, 2, 0, 4}});
+  split_patches(mesh, {"wall_1"});
+  split_patches(mesh, {"wall_2"});
+  EXPECT_EQ(first_defect(mesh), std::nullopt);
+  std::set<Triangle> boundary;
+  for (Triangle f : mesh.boundary) std::ranges::sort(f), boundary.insert(f);
+  ASSERT_EQ(mesh.split_faces.size(), 64U);
+  for (const SplitFace& f : mesh.split_faces)
+    for (const std::size_t first : {0, 3}) {
+      Triangle side{f.nodes[first], f.nodes[first + 1], f.nodes[first + 2]};
+      std::ranges::sort(side);
+      EXPECT_TRUE(boundary.contains(side));
+    }
+}
+
+TEST(Split, NamesOfOtherSides) {
+  using Names = std::vector<std::string>;
+  EXPECT_EQ(other_sides("fault_plus"), Names{"fault_minus"});
+  EXPECT_EQ(other_sides("left|right"), Names{"right|left"});
+  EXPECT_EQ(other_sides("left|right#2"), (Names{"right#2|left", "right|left#2"}));
+  EXPECT_EQ(other_sides("seat (left|right)"), Names{"seat (right|left)"});
+  EXPECT_EQ(other_sides("wall"), Names());
+}
+
 TEST(Split, WhatIsNotInsideIsRefusedBeforeAnyChange) {
   TetMesh mesh = with_walls({{0, 2, 0, 4}});
   const TetMesh before = mesh;

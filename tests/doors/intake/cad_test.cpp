@@ -4,6 +4,7 @@
 #include <octafront/error.h>
 #include <octafront/generate.h>
 #include <octafront/named_groups.h>
+#include <octafront/validity.h>
 
 #include "support/test_folder.h"
 
@@ -101,6 +102,34 @@ TEST_F(CadFiles, AMeshHasThePatchesAndCurvesThatTheFileIsSaidToHave) {
   EXPECT_EQ(std::set<std::string>(made.patches.begin(), made.patches.end()), patches);
   EXPECT_EQ(std::set<std::string>(made.curves.begin(), made.curves.end()),
             std::set<std::string>(info.edges.begin(), info.edges.end()));
+}
+
+TEST_F(CadFiles, PartsThatComeApartKeepTheirVolumesNamesAndSets) {
+  Options options = of_size(7);
+  options.order = 2;
+  options.size.named = {{"bolt", 3}};
+  options.groups = {"holes=cylinders of radius 4"};
+  IntakeOptions intake;
+  intake.contacts = "separate";
+  const Result made = meshed(kAssembly, options, intake);
+  EXPECT_EQ(first_defect(made.mesh), std::nullopt);
+  EXPECT_EQ(made.mesh.region_names, (std::vector<std::string>{"plate", "bracket", "bolt", "bolt#2"}));
+  ASSERT_EQ(made.report.regions.size(), 4U);
+  for (const RegionSummary& region : made.report.regions)
+    EXPECT_NEAR(region.volume / region.true_volume, 1, 1e-3) << region.name;
+  ASSERT_EQ(made.report.contacts.size(), 7U);
+  for (const ContactSummary& contact : made.report.contacts) {
+    EXPECT_FALSE(contact.conforming);
+    EXPECT_NEAR(contact.areas[0] / contact.areas[1], 1, 0.05) << contact.patches[0];
+    EXPECT_GT(contact.triangles[0], 0U);
+  }
+  const NamedSet* holes = set_named(made.mesh, "holes");
+  ASSERT_NE(holes, nullptr);
+  std::size_t in_holes = 0;
+  for (const char* patch : {"plate|bolt", "bolt|plate", "plate|bolt#2", "bolt#2|plate"})
+    in_holes += faces_of_patch(made.mesh, patch);
+  EXPECT_GE(holes->members.size(), in_holes);
+  EXPECT_EQ(set_named(made.mesh, "cylinders of radius 4"), nullptr);
 }
 
 TEST_F(CadFiles, GroupsAreAlsoOfWhatSomethingIsLike) {

@@ -18,6 +18,7 @@
 #include <algorithm>
 #include <cmath>
 #include <filesystem>
+#include <fstream>
 #include <string>
 
 #include <gtest/gtest.h>
@@ -239,6 +240,24 @@ TEST_F(Intake, SizesOfTheMeshGoToTheWayInUnlessThatHasItsOwn) {
   own.cad.size = 3;
   EXPECT_EQ(intake_for(options, own).cad.size, 3);
   EXPECT_FALSE(intake_for(options, own).cad.elements);
+}
+
+TEST_F(Intake, ContactsAreOfLabelsAndOfParts) {
+  IntakeOptions options;
+  options.contacts = "2.5,split";
+  std::ofstream(folder_ / "rules.txt") << "# none\n\nlow=shared\n";
+  options.contact = "a|b=c=separate;" + (folder_ / "rules.txt").string();
+  const auto [of_labels, of_parts] = intake::contacts_asked(options);
+  EXPECT_EQ(of_labels, "2.5");
+  EXPECT_EQ(of_parts.all, ContactWay::kSplit);
+  ASSERT_EQ(of_parts.rules.size(), 2U);
+  EXPECT_EQ(of_parts.rules[0].contact, "a|b=c");
+  EXPECT_EQ(of_parts.rules[0].way, ContactWay::kSeparate);
+  EXPECT_EQ(of_parts.rules[1].contact, "low");
+  options.contact = "a|b=glued";
+  EXPECT_THROW(intake::contacts_asked(options), OptionError);
+  options = {}, options.contacts = "keep";
+  EXPECT_THROW(open_domain(cube(2), options), OptionError) << "of images only";
 }
 
 TEST_F(Intake, UnitsOfCadAreThoseOfLength) {
