@@ -192,8 +192,9 @@ TEST(Split, BothSidesOfAContactAreCalledByTheirParts) {
   EXPECT_EQ(faces_of(mesh, "right|left#2"), 32U);
   const std::set<VertexIndex> left = nodes_of(mesh, 0);
   for (std::size_t f = 0; f < mesh.boundary.size(); ++f)
-    if (mesh.patch[f] == first || mesh.patch[f] == second)
+    if (mesh.patch[f] == first || mesh.patch[f] == second) {
       EXPECT_EQ(left.contains(mesh.boundary[f][0]), mesh.patch[f] == first);
+    }
 }
 
 TEST(Split, AContactWithANameKeepsIt) {
