@@ -318,7 +318,7 @@ class CommandLine(unittest.TestCase):
         self.assertEqual(len(apart["opened_contacts"]), 6)
         self.assertFalse(any(c["conforming"] for c in apart["opened_contacts"]))
         for region in apart["regions"]:
-            self.assertAlmostEqual(region["volume"] / region["true_volume"], 1, delta=.01)
+            self.assertAlmostEqual(region["volume"] / region["true_volume"], 1, delta=.02)  # chords of the bolts
         rules = self.dir / "contacts.txt"
         rules.write_text("# seat only\nplate|bracket=split\n")
         self.assertEqual(len(made("--contact", rules)["opened_contacts"]), 1)

@@ -399,6 +399,16 @@ class Complexes(Case):
         volumes = tet_volumes(mesh)
         self.assertAlmostEqual(volumes[mesh.regions == 1].sum(), 3, places=9)
 
+    def test_contacts_of_parts_are_opened(self):
+        parts = octafront.join_bodies({"a": self.block((0, 0, 0), (1, 1, 1)), "b": self.block((1, 0, 0), (3, 1, 1))})
+        self.assertEqual(octafront.mesh(parts, size=.5).opened_contacts, [])
+        for way, conforming in (("split", True), ("separate", False)):
+            mesh = octafront.mesh(parts, size=.5, contacts=way)
+            self.assertEqual(mesh.opened_contacts, [("a_b (a|b)", "a_b (b|a)", conforming)])
+            self.assertEqual(mesh.report["opened_contacts"][0]["conforming"], conforming)
+        with self.assertRaisesRegex(octafront.OptionError, "there is no contact"):
+            octafront.mesh(parts, size=.5, contact="a|c=split")
+
     def test_regions_are_named_and_emptied_by_points(self):
         with_wall = octafront.join_bodies({"a": self.block((0, 0, 0), (1, 1, 1)), "b": self.block((1, 0, 0), (3, 1, 1))})
         walls = octafront.Surface(with_wall.points, with_wall.triangles)
@@ -482,16 +492,6 @@ class OneWayIn(BesideTheLine):
         self.assertEqual(octafront.mesh(pickle.loads(pickle.dumps(octafront.mend(soup)))).report["hash"], automatic)
         with self.assertRaises(octafront.InputError):
             octafront.mesh(soup, repair="none")
-
-    def test_contacts_of_parts_are_opened(self):
-        parts = octafront.join_bodies({"a": self.block((0, 0, 0), (1, 1, 1)), "b": self.block((1, 0, 0), (3, 1, 1))})
-        self.assertEqual(octafront.mesh(parts, size=.5).opened_contacts, [])
-        for way, conforming in (("split", True), ("separate", False)):
-            mesh = octafront.mesh(parts, size=.5, contacts=way)
-            self.assertEqual(mesh.opened_contacts, [("a_b (a|b)", "a_b (b|a)", conforming)])
-            self.assertEqual(mesh.report["opened_contacts"][0]["conforming"], conforming)
-        with self.assertRaisesRegex(octafront.OptionError, "there is no contact"):
-            octafront.mesh(parts, size=.5, contact="a|c=split")
 
     def test_two_bodies(self):
         plate, pin = Complexes.block((0, 0, 0), (1, 1, 1)), Complexes.block((.25, .25, 1), (.75, .75, 1.5))
