@@ -91,7 +91,8 @@ void open_contacts(const Domain& domain, TetMesh& mesh, const Stage& stage) {
   for (const PartContact& contact : contacts_of(domain))
     if (contact.way == ContactWay::kShared) shared.insert(contact.name);
   std::vector<std::uint32_t> opened = contacts_of(mesh);
-  if (opened.empty()) return stage.note("no two parts touch, and there is no contact to open");
+  if (opened.empty() && domain.contacts.all != ContactWay::kShared)
+    stage.note("no two parts touch, and there is no contact to open");
   std::erase_if(opened, [&](std::uint32_t patch) {
     return patch < mesh.patch_names.size() && shared.contains(mesh.patch_names[patch]);
   });

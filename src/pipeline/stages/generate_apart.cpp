@@ -14,6 +14,7 @@
 #include "pipeline/stages/finish.h"
 #include "pipeline/stages/found_shapes.h"
 #include "pipeline/stages/true_shape.h"
+#include "sizing/sources/named_sizes.h"
 
 #include <algorithm>
 #include <cmath>
@@ -117,10 +118,16 @@ class PlacesOfParts {
     const auto lacks = [&](const char* option, const std::string& place) { return !has(part, option, place); };
     std::erase_if(options.size.named, [&](const NamedSize& s) { return lacks("size_of", s.name); });
     std::erase_if(options.size.near, [&](const NearSize& s) { return !s.name.empty() && lacks("size_near", s.name); });
+    take_places_in_space(options.size);
+    const Box3 box = bounding_box(parts_[part]->surface.points);
+    std::erase_if(options.size.regions, [&](const SizeRegion& r) {
+      const Vec3 around{r.radius, r.radius, r.radius};
+      return !box.overlaps({r.lo - around, r.hi + around});
+    });
     const bool on_some = !options.layers.on.empty(), in_some = !options.layers.in.empty();
     options.layers.on = listed(part, "on", options.layers.on);
     options.layers.in = listed(part, "in", options.layers.in);
-    if ((on_some && options.layers.on.empty()) || (in_some && options.layers.in.empty())) options.layers.count = 0;
+    if ((on_some && options.layers.on.empty()) || (in_some && options.layers.in.empty())) options.layers = {};
     options.split = split_inside(part, options.split);
     if (options.size.elements)
       options.size.elements =
@@ -326,13 +333,13 @@ class PartsApart {
 
   /// For each part. Throws OptionError for places that no part has.
   std::vector<Options> options_by_part(const Options& asked) const {
-    const Options options = whole_.geometry ? options_for_geometry(whole_, asked) : asked;
     std::vector<std::string> groups;
     if (whole_.geometry) groups = places_without_names(*whole_.geometry, asked.groups, named_);
     PlacesOfParts places(whole_.surface, parts_);
     std::vector<Options> by_part;
     const std::vector<double> shares = shares_of_volume();
-    for (std::size_t k = 0; k < parts_.size(); ++k) by_part.push_back(places.options_of(k, options, shares[k], groups));
+    for (std::size_t k = 0; k < parts_.size(); ++k)
+      by_part.push_back(places.options_of(k, options_for(parts_[k], asked), shares[k], groups));
     places.refuse_unknown();
     return by_part;
   }
@@ -363,6 +370,16 @@ class PartsApart {
   }
 
  private:
+  /// Places of CAD by the names that they have in a part; what is split, by those of the whole.
+  Options options_for(const Domain& part, Options asked) const {
+    if (!part.geometry) return asked;
+    const std::string split = options_for_geometry(whole_, asked).split;
+    asked.split.clear();
+    asked = options_for_geometry(part, asked);
+    asked.split = split;
+    return asked;
+  }
+
   std::vector<double> shares_of_volume() const {
     const std::vector<double> volumes = volumes_of_regions(whole_.surface);
     std::vector<double> shares;

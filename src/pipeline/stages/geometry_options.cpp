@@ -52,7 +52,10 @@ void check_group_of(const Domain& domain, const GroupRule& rule) {
 class PlacesOfGeometry {
  public:
   explicit PlacesOfGeometry(const Domain& domain)
-      : domain_(domain), geometry_(*domain.geometry), surface_(domain.surface) {}
+      : domain_(domain),
+        geometry_(*domain.geometry),
+        surface_(domain.surface),
+        there_(names_with_triangles(domain.surface)) {}
 
   Meant meant(std::string_view option, const std::string& place) const {
     if (is_name_of_other(place)) return {{place}, {}};
@@ -132,6 +135,7 @@ class PlacesOfGeometry {
     std::set<std::uint32_t> patches;
     for (const std::uint32_t part : line.parts) patches.insert(geometry_.patch_of_part(part));
     patches.erase(kNone);
+    std::erase_if(patches, [&](std::uint32_t p) { return !there_.contains(geometry_.patch_names()[p]); });
     const std::vector<std::uint32_t> in_order(patches.begin(), patches.end());
     return in_order.size() < 2 ? "" : curve_name(in_order, geometry_.patch_names());
   }
@@ -139,6 +143,7 @@ class PlacesOfGeometry {
   const Domain& domain_;
   const TrueGeometry& geometry_;
   const SurfaceMesh& surface_;
+  std::set<std::string> there_;  ///< names_with_triangles()
 };
 
 /// Sizes at places become such on patches, along curves, in regions and at points.

@@ -90,12 +90,9 @@ NamedSet elements_of(const PartGroup& group, const TetMesh& mesh) {
   return set;
 }
 
-/// Per part whether the surface has a triangle of its patch: of a file whose solids are meshed one by one not all do.
+/// Per part whether the surface has a triangle of its patch.
 std::vector<char> parts_of_surface(const TrueGeometry& geometry, const SurfaceMesh& surface) {
-  std::set<std::string> patches;
-  for (std::size_t t = 0; t < surface.triangles.size(); ++t)
-    if (const std::uint32_t p = surface.patch_of(t); p < surface.patch_names.size())
-      patches.insert(surface.patch_names[p]);
+  const std::set<std::string> patches = names_with_triangles(surface);
   std::vector<char> has;
   for (std::uint32_t part = 0; part < geometry.part_names().size(); ++part) {
     const std::uint32_t patch = geometry.patch_of_part(part);
@@ -125,6 +122,14 @@ std::string parts_without_faces(const TrueGeometry& geometry, const SurfaceMesh&
 }
 
 }  // namespace
+
+std::set<std::string> names_with_triangles(const SurfaceMesh& surface) {
+  std::set<std::string> patches;
+  for (std::size_t t = 0; t < surface.triangles.size(); ++t)
+    if (const std::uint32_t p = surface.patch_of(t); p < surface.patch_names.size())
+      patches.insert(surface.patch_names[p]);
+  return patches;
+}
 
 void place_on_geometry(const Prepared& input, Filled& filled, Run& run) {
   if (!input.geometry) return;

@@ -5,6 +5,7 @@
 #include "pipeline/stages/stages.h"
 
 #include <cstdint>
+#include <set>
 #include <string>
 #include <vector>
 
@@ -13,6 +14,9 @@ namespace octafront {
 /// The options for a domain of CAD: lines are borders of patches, so that features by angle are those that a face has
 /// within itself; for sizes and layers parts and groups become their patches and regions.
 Options options_for_geometry(const Domain& domain, Options options);
+
+/// The names of the patches that have a triangle: of a file whose solids are meshed one by one not all do.
+std::set<std::string> names_with_triangles(const SurfaceMesh& surface);
 
 /// Moves the vertices of boundary and interfaces to the true geometry, and numbers patches as it does;
 /// `filled.boundary` follows. Where the input's triangles are kept only the patches change.

@@ -107,8 +107,9 @@ TEST_F(CadFiles, AMeshHasThePatchesAndCurvesThatTheFileIsSaidToHave) {
 TEST_F(CadFiles, PartsThatComeApartKeepTheirVolumesNamesAndSets) {
   Options options = of_size(7);
   options.order = 2;
-  options.size.named = {{"bolt", 3}};
+  options.size.named = {{"bolt", 3}, {"circles of radius 4 of bracket", 1}};
   options.groups = {"holes=cylinders of radius 4"};
+  options.split = "seat";  // which is open already
   IntakeOptions intake;
   intake.contacts = "separate";
   const Result made = meshed(kAssembly, options, intake);
@@ -130,6 +131,8 @@ TEST_F(CadFiles, PartsThatComeApartKeepTheirVolumesNamesAndSets) {
     in_holes += faces_of_patch(made.mesh, patch);
   EXPECT_GE(holes->members.size(), in_holes);
   EXPECT_EQ(set_named(made.mesh, "cylinders of radius 4"), nullptr);
+  for (const StageReport& stage : made.report.stages)
+    for (const std::string& note : stage.notes) EXPECT_EQ(note.find("no elements of their own"), note.npos) << note;
 }
 
 TEST_F(CadFiles, GroupsAreAlsoOfWhatSomethingIsLike) {

@@ -135,6 +135,22 @@ TEST(Contacts, SetsAreOfTheWhole) {
             std::ranges::count_if(mesh.region, [](std::uint32_t r) { return r < 2; }));
 }
 
+TEST(Contacts, WhatIsAskedAtPlacesGoesToThePartsThatHaveThem) {
+  Options options = layers_of_size(0.25);
+  options.layers.count = 2;
+  options.layers.on = "low|middle";
+  options.layers.in = "low";
+  options.layers.first = 0.01;
+  options.size.named = {{"box:0,0,0.9,1,1,1", 0.1}};
+  const Result made = generate(with(ContactWay::kSeparate), options);
+  EXPECT_EQ(first_defect(made.mesh), std::nullopt);
+  EXPECT_NEAR(made.report.volume, 1, 1e-9);
+  ASSERT_EQ(made.report.layers.size(), 1U);
+  EXPECT_EQ(made.report.layers[0].full, 1);
+  for (const StageReport& stage : made.report.stages)
+    for (const std::string& note : stage.notes) EXPECT_EQ(note.find("outside of the model"), note.npos) << note;
+}
+
 TEST(Contacts, WhatCannotBeIsRefusedBeforeAnythingIsMade) {
   const auto refused = [](const Domain& domain, const Options& options, const std::string& words) {
     EXPECT_THAT([&] { generate(domain, options); }, ThrowsMessage<OptionError>(HasSubstr(words)));
