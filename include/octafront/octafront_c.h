@@ -92,8 +92,8 @@ void octafront_surface_set_voxel(octafront_surface* surface, double spacing);
  * interfaces (U32 x 3), interface_patch (U32 x 1), curve_edges (U32 x 2), curve (U32 x 1), mid_nodes (U32 x 6),
  * wide_cells (U32 x 8: of wedges and pyramids the first tet, the number of tets, six nodes), wide_faces (U32 x 5: of
  * their quadrilaterals the first face, four nodes), split_faces (U32 x 7: three corners behind, their partners in
- * front, the patch in front), opened_contacts (U32 x 3: two patches that lie on each other, and 1 if their triangles are
- * the same, else 0), periods (F64 x 3: of a periodic cell the translations), period_rotations (F64 x 9: the
+ * front, the patch in front), opened_contacts (U32 x 3: two patches that lie on each other, and 1 if their triangles
+ * are the same, else 0), periods (F64 x 3: of a periodic cell the translations), period_rotations (F64 x 9: the
  * matrices of periods, row by row; none if all are translations), periodic_nodes (U32 x 3: the number of a period, a
  * node that is a copy, the node that it is a copy of). Of what octafront_adapt() left also old_of_new and
  * old_tet_of_new (U32 x 1: the number in the old mesh of each point and tet, 0xffffffff: new), to be read. Its lists of
@@ -231,8 +231,9 @@ octafront_job* octafront_write_surface(const octafront_surface* surface, const c
 octafront_job* octafront_read_mesh(const char* file); /**< -> mesh */
 /** `options`: null, or JSON, an object of any of format (a name of octafront_formats(); else by the ending of the
  * file), ascii (true: as text), cells_only (true: tetrahedra alone), polyhedral (true: the dual), parts (a number: so
- * many parts), partitioner ("curve", "metis"), split_files (true: MSH in parts, a file each): WriteOptions of
- * octafront/io.h. The report has notes. */
+ * many parts), partitioner ("curve", "metis"), split_files (true: MSH in parts, a file each), job (what makes it a job
+ * of a solver, an object or the name of a file of it: octafront/solver_job.h): WriteOptions of octafront/io.h. The
+ * report has notes. */
 octafront_job* octafront_write_mesh(const octafront_mesh* mesh, const char* file, const char* options);
 octafront_job* octafront_read_sizes(const char* file, double gradation); /**< -> sizes */
 octafront_job* octafront_write_sizes(const octafront_sizes* sizes, const char* file);
