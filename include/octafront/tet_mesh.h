@@ -125,7 +125,7 @@ struct TetMesh {
   /// One per boundary face and, behind them, interface: how many boundary layers grow at each corner of it, at least;
   /// kNone: it is no wall of any. Empty: not known.
   std::vector<std::uint32_t> face_layers;
-  std::vector<SplitFace> split_faces;  ///< faces of the boundary that touch, where the mesh was split; by patch
+  std::vector<SplitFace> split_faces;          ///< faces of the boundary that touch, where the mesh was split; by patch
   std::vector<OpenedContact> opened_contacts;  ///< by their first patches
 
   bool is_second_order() const { return !mid_nodes.empty(); }

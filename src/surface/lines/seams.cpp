@@ -617,8 +617,8 @@ namespace {
 constexpr double kUnderEdge = 0.05;
 
 bool is_on_edge(Vec3 p, Vec3 a, Vec3 b) {
-  return dot(a - p, b - p) < 0 &&
-         squared_length(cross(a - p, b - p)) < kUnderEdge * kUnderEdge * squared_distance(a, b) * squared_distance(a, b);
+  return dot(a - p, b - p) < 0 && squared_length(cross(a - p, b - p)) <
+                                      kUnderEdge * kUnderEdge * squared_distance(a, b) * squared_distance(a, b);
 }
 
 /// Edges that run between vertices on seams, by where these are: those on seams, and others.
