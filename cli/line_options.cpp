@@ -3,6 +3,7 @@
 #include <octafront/io.h>
 
 #include "image_arguments.h"
+#include "job_options.h"
 #include "units.h"
 
 #include <algorithm>
@@ -395,6 +396,7 @@ std::vector<LineOption> run_options() {
 const std::vector<OptionGroup>& option_groups() {
   static const std::vector<OptionGroup> groups{
       {"Output", "output", ""},
+      {"Jobs", "jobs", "Abaqus, CalculiX, Nastran: the output is a job that a solver runs (docs/use/jobs.md)"},
       {"Sizes", "sizes", "None given: an automatic size. Several: the smallest wins"},
       {"Surface", "surface", ""},
       {"Elements", "elements", ""},
@@ -418,8 +420,8 @@ const std::vector<OptionGroup>& option_groups() {
 const std::vector<LineOption>& line_options() {
   static const std::vector<LineOption> all = [] {
     std::vector<LineOption> list;
-    for (const auto& part :
-         {output_options(), size_options(), body_options(), image_line_options(), adapt_options(), run_options()})
+    for (const auto& part : {output_options(), job_options(), size_options(), body_options(), image_line_options(),
+                             adapt_options(), run_options()})
       list.insert(list.end(), part.begin(), part.end());
     return list;
   }();

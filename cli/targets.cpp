@@ -44,6 +44,9 @@ bool takes_parts(const Arguments& a, std::size_t i) {
 WriteOptions options_of(const Arguments& a, std::size_t i) {
   WriteOptions options = a.writing;
   if (!a.formats.empty()) options.format = a.formats[i];
+  // Beside a job other outputs are the mesh alone.
+  if (a.meshes.size() > 1 && !format_for(a.meshes[i].string(), {.format = options.format}).holds.jobs)
+    options.job.reset();
   if (!takes_parts(a, i)) options.parts = 0, options.partitioner = Partitioner::kCurve, options.split_files = false;
   return options;
 }

@@ -6,11 +6,13 @@
 #include <octafront/options.h>
 #include <octafront/run_context.h>
 #include <octafront/size_field.h>
+#include <octafront/solver_job.h>
 #include <octafront/surface_mesh.h>
 #include <octafront/tet_mesh.h>
 
 #include <cstdint>
 #include <memory>
+#include <optional>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -94,7 +96,8 @@ struct WriteOptions {
   std::uint32_t parts = 0;  ///< so many parts, as programs on several processes want them: formats that hold them; each
                             ///< with one layer of elements around it where the format has that. 0: the mesh as one
   Partitioner partitioner = Partitioner::kCurve;
-  bool split_files = false;  ///< MSH: NAME_1.msh and so on, one for each part, in the place of NAME.msh
+  std::optional<SolverJob> job = {};  ///< makes the file a job: formats that hold them
+  bool split_files = false;           ///< MSH: NAME_1.msh and so on, one for each part, in the place of NAME.msh
 };
 
 /// Writes a mesh in the format that the ending of the name tells, or that is asked for. Regions, patches, curves and
@@ -208,6 +211,7 @@ struct FormatHolds {
   bool surfaces_alone = false;     ///< a mesh of triangles without tetrahedra
   bool parts = false;              ///< WriteOptions::parts
   bool polyhedra = false;          ///< WriteOptions::polyhedral
+  bool jobs = false;               ///< WriteOptions::job
 };
 
 /// What is known of a file format, for help texts and --format.

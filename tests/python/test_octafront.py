@@ -1110,6 +1110,20 @@ class Meshes(Case):
         with self.assertRaises(octafront.OptionError):
             mesh.add_set("far", [len(mesh.points)])
 
+    def test_a_mesh_is_a_job_of_a_solver(self):
+        mesh = octafront.mesh(*cube(), size=0.4)
+        job = {"fix": {"box:-1,-1,-1,2,2,.01": "xy"}, "gravity": [0, 0, -9.81]}
+        self.assertIn("PLACEHOLDER", " ".join(mesh.save(self.folder / "dict.inp", job=job)))
+        (self.folder / "job.json").write_text(json.dumps(job))
+        mesh.save(self.folder / "file.inp", job=self.folder / "job.json")
+        text = (self.folder / "dict.inp").read_text()
+        self.assertIn("*STEP", text)
+        self.assertEqual((self.folder / "file.inp").read_text(), text)
+        with self.assertRaisesRegex(octafront.OptionError, '"lift", which is none of'):
+            mesh.save(self.folder / "m.inp", job={"lift": {}})
+        with self.assertRaises(octafront.InputError):
+            mesh.save(self.folder / "m.inp", job="nowhere.json")
+
     def test_meshes_are_written_in_parts(self):
         mesh = octafront.mesh(*cube(), size=0.3)
         mesh.save(self.folder / "m.pvtu", parts=3)

@@ -53,6 +53,11 @@ WriteOptions write_options_from(const Json& json) {
     const std::string name(info.name);
     with(json, name.c_str(), [&](const Json& value) { set_option(options, name, value_of(name, value)); });
   }
+  with(json, "job", [&](const Json& value) {
+    options.job.emplace();
+    if (value.is_string()) return add_file_to_job(*options.job, value.get<std::string>());
+    add_to_job(*options.job, value.dump());
+  });
   check_ranges(options);
   return options;
 }

@@ -134,6 +134,10 @@ constexpr Format with_cohesive(Format format) {
   format.info.holds.cohesive = true;
   return format;
 }
+constexpr Format with_jobs(Format format) {
+  format.info.holds.jobs = true;
+  return format;
+}
 constexpr Format with_parts(Format format, void (*write)(MeshOutput&, Pieces&),
                             void (*check)(const std::filesystem::path&, std::uint32_t) = nullptr) {
   format.info.holds.parts = write != nullptr;
@@ -191,11 +195,13 @@ constexpr std::array kFormats{
     with_fields(or_text(mesh("simnibs", "SimNIBS (MSH 2.2)", "", binary(kTissues),
                              "labels as tags of tetrahedra, 1000 more of triangles; binary or text", write_simnibs)),
                 false),
-    read(with_cohesive(with_wedges(mesh("abaqus", "Abaqus, CalculiX", ".inp", kSolver,
-                                        "ELSET, NSET, SURFACE; numbers of at most 20 characters", write_abaqus))),
+    read(with_jobs(
+             with_cohesive(with_wedges(mesh("abaqus", "Abaqus, CalculiX", ".inp", kSolver,
+                                            "ELSET, NSET, SURFACE; numbers of at most 20 characters", write_abaqus)))),
          told_abaqus, read_abaqus),
-    read(with_wedges(mesh("nastran", "Nastran", ".bdf .nas", kSolver,
-                          "PSOLID, PSHELL, SET; numbers of at most 16 characters (9 to 15 digits)", write_nastran)),
+    read(with_jobs(with_wedges(mesh("nastran", "Nastran", ".bdf .nas", kSolver,
+                                    "PSOLID, PSHELL, SET; numbers of at most 16 characters (9 to 15 digits)",
+                                    write_nastran))),
          told_nastran, read_nastran),
     read(with_wedges(mesh("unv", "I-deas universal", ".unv", kAll, "groups (dataset 2477); 17 digits", write_unv)),
          told_unv, read_unv),

@@ -6,12 +6,14 @@
 #include "base/core/thread_limit.h"
 #include "base/mesh/renumber.h"
 #include "formats/files/formats.h"
+#include "formats/jobs/job_plan.h"
 #include "formats/parts/division.h"
 #include "formats/parts/mixed_cells.h"
 #include "formats/parts/pieces.h"
 #include "formats/parts/raw_mesh.h"
 
 #include <algorithm>
+#include <optional>
 #include <utility>
 
 #include <fmt/core.h>
@@ -78,6 +80,13 @@ void check_polyhedral(const io::Format& format, const WriteOptions& options) {
 void check_options(const io::Format& format, const WriteOptions& options) {
   check_parts(format, options);
   check_polyhedral(format, options);
+  if (options.job && !format.info.holds.jobs)
+    throw OptionError(fmt::format("{} is no job of a solver here; `job` is for {}", format.info.title,
+                                  names_that([](const io::Format& f) { return f.info.holds.jobs; })));
+  if (options.job && !options.job->pretensions.empty() && options.cohesive)
+    throw OptionError("`pretension` opens sections that are no cracks: it does not go with `cohesive`");
+  if (options.job && (options.cells_only || options.parts > 0))
+    throw OptionError("a job needs the faces, and the mesh as one: `job` goes with no `cells_only` and `parts`");
   const bool is_of_surfaces = format.write_mesh == nullptr && format.write_parts == nullptr;
   if (options.ascii && (is_of_surfaces || format.info.holds.binary) && !format.info.also_text)
     throw OptionError(
@@ -171,17 +180,20 @@ std::vector<std::string> write_mesh(const std::string& file, const TetMesh& mesh
   return write_mesh(file, mesh, {}, context, options);
 }
 
-std::vector<std::string> write_mesh(const std::string& file, const TetMesh& mesh, std::span<const MeshField> fields,
-                                    const RunContext& context, const WriteOptions& options) {
+std::vector<std::string> write_mesh(const std::string& file, const TetMesh& given_mesh,
+                                    std::span<const MeshField> fields, const RunContext& context,
+                                    const WriteOptions& options) {
   check_mesh_target(file, options);
-  require_fitting(file, mesh, fields);
+  require_fitting(file, given_mesh, fields);
   const ThreadLimit limit(context.threads);
   const io::Format& format = mesh_format(file, options.format);
   std::string title;
   const FormatInfo info = info_for(format.info, options, title);
   const FormatHolds& holds = info.holds;
-  const bool is_wide = holds.second_order && mesh.is_second_order() ? holds.curved_wide_cells : holds.wide_cells;
+  const bool is_wide = holds.second_order && given_mesh.is_second_order() ? holds.curved_wide_cells : holds.wide_cells;
   const bool is_curved = is_wide && holds.second_order;
+  const io::JobMesh for_job = options.job ? io::mesh_for_job(given_mesh, *options.job) : io::JobMesh{};
+  const TetMesh& mesh = for_job.changed ? *for_job.changed : given_mesh;
   const io::WithoutDiagonals without = is_curved ? io::without_diagonals(mesh) : io::WithoutDiagonals{};
   const io::MeshParts parts(without.mesh ? *without.mesh : mesh, {.mid_nodes = !holds.second_order,
                                                                   .faces = options.cells_only,
@@ -220,6 +232,9 @@ std::vector<std::string> write_mesh(const std::string& file, const TetMesh& mesh
       io::Pieces pieces(parts, io::divide(parts.mesh(), std::max(options.parts, 1U), options.partitioner), fields);
       format.write_parts(out, pieces);
     } else {
+      std::optional<io::JobPlan> plan;
+      if (options.job) plan = io::plan_job(out, parts, *options.job, for_job.sections);
+      out.set_job(plan ? &*plan : nullptr);
       format.write_mesh(out, parts);
     }
   }

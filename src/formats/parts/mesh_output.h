@@ -16,6 +16,8 @@
 
 namespace octafront::io {
 
+struct JobPlan;
+
 /// Where a mesh goes: one file, several, or a folder. They get their names when all are complete; whatever fails
 /// before, older ones stay as they were. What a writer has to tell the user goes into `notes`.
 class MeshOutput {
@@ -48,6 +50,9 @@ class MeshOutput {
   std::filesystem::path folder(const std::filesystem::path& final);
   /// Where one of many files is written that gets this name beside the target in the end: none of them is kept open.
   std::filesystem::path piece_file(const std::string& name);
+  /// The job that the file is; null: it is a mesh alone.
+  const JobPlan* job() const { return job_; }
+  void set_job(const JobPlan* job) { job_ = job; }
   /// Each text once.
   void note(std::string text) {
     if (!text.empty() && std::find(notes_.begin(), notes_.end(), text) == notes_.end())
@@ -71,6 +76,7 @@ class MeshOutput {
   std::vector<Pending> pending_;   ///< folders, and files of scratch_
   std::filesystem::path scratch_;  ///< a folder that goes in the end; empty: none
   std::vector<std::string> notes_;
+  const JobPlan* job_ = nullptr;
 };
 
 }  // namespace octafront::io

@@ -11,6 +11,7 @@
 #include "base/core/wording.h"
 #include "formats/containers/text_writer.h"
 #include "formats/parts/mixed_cells.h"
+#include "formats/write/abaqus_job.h"
 #include "formats/write/writers.h"
 
 #include <algorithm>
@@ -72,6 +73,13 @@ class AbaqusWriter {
   /// Of the curves in a list with commas. Throws OptionError.
   void write_beams(const std::string& list) {
     for (const std::string& name : names_listed(list, mesh_.mesh().curve_names)) write_beams_of(name);
+  }
+
+  void write_job(const JobPlan& plan, bool has_sections) {
+    const AbaqusNames names{.parts = names_,
+                            .more = [this](const std::string& name) { return further_.legal(name); },
+                            .first_node = mesh_.points() + mesh_.mesh().periods.size() + 1};
+    write_abaqus_job(text_, mesh_, plan, names, has_sections);
   }
 
   /// COH3D6: the triangle behind, the one in front, in the order in which wedges have theirs.
@@ -238,10 +246,10 @@ void write_abaqus(MeshOutput& out, const MeshParts& mesh) {
   writer.write();
   writer.write_materials(out.options().materials, out.options().poissons_ratio);
   writer.write_beams(out.options().beams);
-  if (!out.options().cohesive) return;
-  if (mesh.second_order())
+  if (out.options().cohesive && mesh.second_order())
     out.note("cohesive elements are linear (COH3D6): the mid-side nodes of the two sides stay free of each other");
-  writer.write_cohesive();
+  if (out.options().cohesive) writer.write_cohesive();
+  if (out.job() != nullptr) writer.write_job(*out.job(), !out.options().materials.empty());
 }
 
 }  // namespace octafront::io

@@ -2,8 +2,11 @@
 // CTRIA3/CTRIA6 (CQUAD4/CQUAD8) of a PSHELL without material, numbered behind the solids; curves, as their nodes, and
 // sets are SETs of the case control. Names are comments: "$ NAME PSOLID 1 "left part"".
 
+#include <octafront/error.h>
+
 #include "formats/containers/text_writer.h"
 #include "formats/parts/mixed_cells.h"
+#include "formats/write/nastran_job.h"
 #include "formats/write/writers.h"
 
 #include <algorithm>
@@ -19,31 +22,44 @@ using Origin = Part::Origin;
 
 class NastranWriter {
  public:
-  NastranWriter(MeshOutput& out, const MeshParts& mesh) : text_(out.file()), mesh_(mesh), cells_(mesh) {
+  NastranWriter(MeshOutput& out, const MeshParts& mesh)
+      : text_(out.file()), mesh_(mesh), cells_(mesh), job_(out.job()) {
     for (const Part& region : mesh.parts(Origin::kRegion)) first_shell_ = std::max(first_shell_, region.tag + 1);
   }
 
   void write() {
-    text_ << "$ Mesh by octafront: materials and what loads it are for you to add\n";
+    if (job_ != nullptr)
+      write_nastran_control(text_, mesh_, *job_);
+    else
+      text_ << "$ Mesh by octafront: materials and what loads it are for you to add\n";
     write_names();
     std::uint64_t number = 0;
     for (const Part& part : mesh_.parts())
       if (part.origin == Origin::kSet || part.origin == Origin::kCurve) write_set(part, ++number);
     text_ << "BEGIN BULK\n";
     for (const Part& region : mesh_.parts(Origin::kRegion)) card("PSOLID", region.tag, region.tag);
-    for (const Part& patch : mesh_.parts(Origin::kPatch)) card("PSHELL", first_shell_ + patch.number);
+    for (const Part& patch : shells()) card("PSHELL", first_shell_ + patch.number);
     for (std::uint64_t v = 0; v < mesh_.points(); ++v) {
       const Vec3 p = mesh_.mesh().points[v];
       (text_ << "GRID*   ").field(16, v + 1) << "                ";
       text_.field(16, p.x).field(16, p.y) << "\n*       ";
-      text_.field(16, p.z) << '\n';
+      text_.field(16, p.z);
+      if (const std::uint64_t system = job_ == nullptr ? 0 : nastran_system_of(*job_, static_cast<VertexIndex>(v)))
+        text_.field(16, system);
+      text_ << '\n';
     }
-    write_faces();
+    if (job_ == nullptr) write_faces();
     write_solids();
+    if (job_ != nullptr) write_nastran_job(text_, mesh_, *job_, cells_.cells() + 1);
     text_ << "ENDDATA\n";
   }
 
  private:
+  /// Faces without a material are none of the elements that a job has.
+  std::span<const Part> shells() const {
+    return job_ == nullptr ? mesh_.parts(Origin::kPatch) : std::span<const Part>();
+  }
+
   void write_faces() {
     constexpr std::array<std::array<const char*, 2>, 2> kCards{{{"CTRIA3  ", "CTRIA6  "}, {"CQUAD4  ", "CQUAD8  "}}};
     std::array<VertexIndex, 8> room;
@@ -66,7 +82,7 @@ class NastranWriter {
 
   void write_names() {
     for (const Part& region : mesh_.parts(Origin::kRegion)) name("PSOLID", region.tag, region);
-    for (const Part& patch : mesh_.parts(Origin::kPatch)) name("PSHELL", first_shell_ + patch.number, patch);
+    for (const Part& patch : shells()) name("PSHELL", first_shell_ + patch.number, patch);
     std::uint64_t number = 0;
     for (const Part& part : mesh_.parts())
       if (part.origin == Origin::kSet || part.origin == Origin::kCurve) {
@@ -120,12 +136,15 @@ class NastranWriter {
   TextWriter text_;
   const MeshParts& mesh_;
   MixedCells cells_;
+  const JobPlan* job_;             ///< null: the mesh alone
   std::uint32_t first_shell_ = 1;  ///< the property of patch 0
 };
 
 }  // namespace
 
 void write_nastran(MeshOutput& out, const MeshParts& mesh) {
+  if (out.job() != nullptr && !out.options().materials.empty())
+    throw OptionError("materials by bins are for Abaqus: a job for Nastran has one of each part");
   NastranWriter(out, mesh).write();
 }
 

@@ -552,12 +552,22 @@ bool turn_away(WorkingMesh& mesh, HalfEdge h) {
   return true;
 }
 
-/// Puts the point of the edge's own patch that is nearest to its middle on it.
-void divide_edge(WorkingMesh& mesh, HalfEdge h, const KnownSurface& complex, const SizeField& sizes) {
+/// The point of the edge's own patch that is nearest to its middle.
+TriangleTree::Nearest patch_at_middle(const WorkingMesh& mesh, HalfEdge h, const KnownSurface& complex) {
   const Vec3 a = mesh.points[mesh.start[h]], b = mesh.points[mesh.end(h)];
-  const TriangleTree::Nearest at = nearest_of_patch(complex, mesh.patch[h / 3], (a + b) * 0.5, distance(a, b));
+  return nearest_of_patch(complex, mesh.patch[h / 3], (a + b) * 0.5, distance(a, b));
+}
+
+void divide_edge(WorkingMesh& mesh, HalfEdge h, const TriangleTree::Nearest& at, const SizeField& sizes) {
   const Vec3 n = normalized(mesh.area_vector(h / 3) + mesh.area_vector(mesh.twin[h] / 3));
   mesh.split_edge(h, mesh.add_vertex(at.point, VertexKind::kFree, n, sizes.at(at.point), at.triangle));
+}
+
+/// Of edges between the same places the one that lies nearest to its patch becomes the last: dividing that would leave
+/// it upon the others.
+void move_nearest_to_end(std::vector<HalfEdge>& edges, const WorkingMesh& mesh, const KnownSurface& complex) {
+  const auto away = [&](HalfEdge h) { return patch_at_middle(mesh, h, complex).squared_distance; };
+  std::rotate(edges.begin(), std::ranges::min_element(edges, {}, away) + 1, edges.end());
 }
 
 }  // namespace
@@ -601,23 +611,86 @@ class SewnNames {
 
 }  // namespace
 
+namespace {
+
+/// A vertex so near to an edge that another part has between two of its neighbours lies on it, in lengths of the edge.
+constexpr double kUnderEdge = 0.05;
+
+bool is_on_edge(Vec3 p, Vec3 a, Vec3 b) {
+  return dot(a - p, b - p) < 0 && squared_length(cross(a - p, b - p)) <
+                                      kUnderEdge * kUnderEdge * squared_distance(a, b) * squared_distance(a, b);
+}
+
+/// Edges that run between vertices on seams, by where these are: those on seams, and others.
+class EdgesBetweenSeams {
+ public:
+  EdgesBetweenSeams(const WorkingMesh& mesh, const PeriodicFaces& periods)
+      : mesh_(mesh), names_(mesh, periods), is_sewn_(mesh.points.size()) {
+    for (VertexIndex v = 0; v < is_sewn_.size(); ++v) is_sewn_[v] = mesh.outgoing[v] != kNone && mesh.is_sewn(v);
+    for (HalfEdge h = 0; h < mesh.start.size(); ++h) {
+      if (mesh.start[h] == kNone || h > mesh.twin[h]) continue;
+      const VertexIndex a = mesh.start[h], b = mesh.end(h);
+      if (!is_sewn_[a] || !is_sewn_[b]) continue;
+      if (mesh.is_seam(h))
+        seams_.insert(names_.name_of(Edge{a, b}));
+      else if (!mesh.is_back(h / 3) && !names_.is_replaced(h / 3))
+        edges_[names_.name_of(Edge{a, b})].push_back(h);
+    }
+    find_divided();
+  }
+
+  /// Those that there are elsewhere, too, but for one of each, which may stay.
+  std::vector<HalfEdge> repeated(const KnownSurface& complex) && {
+    std::vector<HalfEdge> found;
+    for (auto& [key, edges] : edges_) {
+      if (!seams_.contains(key)) {
+        if (edges.size() > 1) move_nearest_to_end(edges, mesh_, complex);
+        edges.pop_back();
+      }
+      found.insert(found.end(), edges.begin(), edges.end());
+    }
+    std::ranges::sort(found);
+    return found;
+  }
+
+ private:
+  /// Two edges in line count as one: a crease from seam to seam may have a vertex between.
+  void find_divided() {
+    std::vector<VertexIndex> ends;
+    for (VertexIndex v = 0; v < mesh_.points.size(); ++v) {
+      if (mesh_.outgoing[v] == kNone || is_sewn_[v] || mesh_.is_back(mesh_.outgoing[v] / 3)) continue;
+      ends.clear();
+      mesh_.for_each_outgoing(v, [&](HalfEdge h) {
+        if (is_sewn_[mesh_.end(h)]) ends.push_back(mesh_.end(h));
+      });
+      for (std::size_t i = 0; i < ends.size(); ++i)
+        for (std::size_t j = i + 1; j < ends.size(); ++j) find_under(v, ends[i], ends[j]);
+    }
+  }
+
+  /// The edges from a to b that v lies on, and which are no side of a flat triangle with it.
+  void find_under(VertexIndex v, VertexIndex a, VertexIndex b) {
+    if (!is_on_edge(mesh_.points[v], mesh_.points[a], mesh_.points[b])) return;
+    const Edge key = names_.name_of(Edge{a, b});
+    const auto at = edges_.find(key);
+    const auto has_corner = [&](HalfEdge h) { return mesh_.apex(h) == v || mesh_.apex(mesh_.twin[h]) == v; };
+    if (at != edges_.end() && std::ranges::none_of(at->second, has_corner)) seams_.insert(key);
+  }
+
+  const WorkingMesh& mesh_;
+  const SewnNames names_;
+  std::vector<char> is_sewn_;
+  std::map<Edge, std::vector<HalfEdge>> edges_;
+  std::set<Edge> seams_;  ///< and what is divided elsewhere
+};
+
+}  // namespace
+
 std::uint64_t divide_repeated_edges(WorkingMesh& mesh, const KnownSurface& complex, const PeriodicFaces& periods,
                                     const SizeField& sizes) {
-  const SewnNames names(mesh, periods);
-  std::map<Edge, HalfEdge> first;
-  std::vector<HalfEdge> repeated;
-  // Seams first: they stay.
-  for (const bool seams : {true, false})
-    for (HalfEdge h = 0; h < mesh.start.size(); ++h) {
-      if (mesh.start[h] == kNone || h > mesh.twin[h] || mesh.is_seam(h) != seams) continue;
-      if (!seams && (mesh.is_back(h / 3) || names.is_replaced(h / 3))) continue;
-      const VertexIndex a = mesh.start[h], b = mesh.end(h);
-      if (!mesh.is_sewn(a) || !mesh.is_sewn(b)) continue;
-      const Edge key = names.name_of(Edge{a, b});
-      if (!first.try_emplace(key, h).second && !seams) repeated.push_back(h);
-    }
+  const std::vector<HalfEdge> repeated = EdgesBetweenSeams(mesh, periods).repeated(complex);
   for (const HalfEdge h : repeated)
-    if (!turn_away(mesh, h)) divide_edge(mesh, h, complex, sizes);
+    if (!turn_away(mesh, h)) divide_edge(mesh, h, patch_at_middle(mesh, h, complex), sizes);
   return repeated.size();
 }
 

@@ -1,0 +1,470 @@
+#include "formats/jobs/job_plan.h"
+
+#include <octafront/error.h>
+
+#include "base/core/wording.h"
+#include "base/places/places.h"
+
+#include <algorithm>
+#include <cmath>
+#include <map>
+#include <set>
+
+#include <fmt/core.h>
+
+namespace octafront::io {
+namespace {
+
+using Kind = NamedSet::Kind;
+using Origin = Part::Origin;
+
+/// Stands where nothing is said: steel in N, mm and t.
+constexpr double kSteelYoung = 210000, kSteelPoisson = 0.3, kSteelDensity = 7.85e-9;
+
+void put_in_order(std::vector<std::uint32_t>& list) {
+  std::ranges::sort(list);
+  list.erase(std::unique(list.begin(), list.end()), list.end());
+}
+
+/// What a place is as one set: faces where they are wanted; else of the one kind that there is, or nodes.
+struct Wanted {
+  Kind kind;
+  std::vector<std::uint32_t> members;
+};
+
+class JobPlaces {
+ public:
+  JobPlaces(const TetMesh& mesh, const MeshParts& parts, const SolverJob& job)
+      : mesh_(mesh), parts_(parts), job_(job) {}
+
+  Wanted faces(std::string_view option, const std::string& place) const {
+    Wanted wanted{Kind::kFaces, items(option, place).faces};
+    if (wanted.members.empty())
+      throw OptionError(
+          fmt::format("`{}`: \"{}\" has no faces; name a patch, a set of faces, or a reference point", option, place));
+    for (const std::uint32_t f : wanted.members)
+      if (f >= mesh_.boundary.size())
+        throw OptionError(
+            fmt::format("`{}`: \"{}\" has faces inside, where parts share their nodes; only free faces can bear that",
+                        option, place));
+    return wanted;
+  }
+  Wanted anything(std::string_view option, const std::string& place) const {
+    MeshItems all = items(option, place);
+    if (all.empty()) throw OptionError(fmt::format("`{}`: nothing lies at \"{}\"", option, place));
+    const std::array lists{&all.nodes, &all.edges, &all.faces, &all.tets};
+    if (std::ranges::count_if(lists, [](const auto* list) { return !list->empty(); }) == 1)
+      for (std::size_t k = 0; k < lists.size(); ++k)
+        if (!lists[k]->empty()) return {static_cast<Kind>(k), *lists[k]};
+    return nodes_of(all);
+  }
+  std::vector<std::uint32_t> regions(std::string_view option, const std::string& place) const {
+    std::vector<std::uint32_t> found;
+    for (const std::uint32_t t : items(option, place).tets) found.push_back(parts_.region_of(t));
+    put_in_order(found);
+    if (found.empty()) throw OptionError(fmt::format("`{}`: \"{}\" has no elements; name a part", option, place));
+    return found;
+  }
+  /// What the mesh calls it; its number among the parts.
+  std::optional<std::size_t> part(const Wanted& wanted) const {
+    for (std::size_t p = 0; p < parts_.parts().size(); ++p) {
+      const Part& part = parts_.parts()[p];
+      if (part.kind == wanted.kind && std::ranges::equal(part.members, wanted.members)) return p;
+    }
+    return std::nullopt;
+  }
+  std::optional<std::size_t> point(const std::string& name) const {
+    const auto at = std::ranges::find(job_.couplings, name, &JobCoupling::name);
+    if (at == job_.couplings.end()) return std::nullopt;
+    return static_cast<std::size_t>(at - job_.couplings.begin());
+  }
+  /// visit(option, place, what it is) for each that is no reference point.
+  template <class Visit>
+  void for_each(const Visit& visit) const {
+    for (const JobFix& fix : job_.fixes)
+      if (!point(fix.place))
+        visit(fix.place, fix.of_cylinder.empty() ? anything("fix", fix.place) : faces("fix", fix.place));
+    for (const JobLoad& load : job_.loads)
+      if (!point(load.place)) visit(load.place, faces("load", load.place));
+    for (const JobPressure& p : job_.pressures) visit(p.place, faces("pressure", p.place));
+    for (const JobCoupling& c : job_.couplings) visit(c.place, faces("couple", c.place));
+  }
+
+ private:
+  MeshItems items(std::string_view option, const std::string& place) const {
+    MeshItems all = items_at(mesh_, option, place_of(option, place));
+    for (auto* list : {&all.nodes, &all.edges, &all.faces, &all.tets}) put_in_order(*list);
+    std::erase_if(all.nodes, [&](VertexIndex v) { return v >= parts_.points(); });  // that the file has not
+    return all;
+  }
+  Wanted nodes_of(const MeshItems& all) const {
+    Wanted wanted{Kind::kNodes, all.nodes};
+    for (const auto& [kind, list] :
+         {std::pair{Kind::kEdges, &all.edges}, {Kind::kFaces, &all.faces}, {Kind::kElements, &all.tets}}) {
+      const std::vector<VertexIndex> nodes = parts_.nodes_of({Origin::kSet, kind, 0, 0, {}, false, *list});
+      wanted.members.insert(wanted.members.end(), nodes.begin(), nodes.end());
+    }
+    put_in_order(wanted.members);
+    return wanted;
+  }
+
+  const TetMesh& mesh_;
+  const MeshParts& parts_;
+  const SolverJob& job_;
+};
+
+class Planner {
+ public:
+  Planner(MeshOutput& out, const MeshParts& mesh, const SolverJob& job, const std::vector<BoltSection>& sections)
+      : out_(out), mesh_(mesh), job_(job), sections_(sections), places_(mesh.mesh(), mesh, job) {}
+
+  JobPlan plan() {
+    plan_materials();
+    plan_couplings();
+    plan_fixes();
+    plan_systems();
+    plan_loads();
+    plan_pressures();
+    plan_contacts();
+    plan_bolts();
+    refuse_what_follows_twice();
+    if (job_.gravity) plan_gravity();
+    note_what_lacks();
+    return std::move(plan_);
+  }
+
+ private:
+  std::size_t part_of(const Wanted& wanted) const { return places_.part(wanted).value(); }
+  std::span<const Part> regions() const { return mesh_.parts(Origin::kRegion); }
+
+  void plan_materials() {
+    plan_.materials = job_.materials;
+    std::vector<std::size_t>& of = plan_.material_of;
+    of.assign(regions().size(), plan_.materials.size());
+    const auto number = [&](const std::string& name) {
+      return static_cast<std::size_t>(std::ranges::find(job_.materials, name, &JobMaterial::name) -
+                                      job_.materials.begin());
+    };
+    for (const JobPart& part : job_.parts)
+      if (part.place.empty()) std::ranges::fill(of, number(part.material));
+    for (const JobPart& part : job_.parts) {
+      if (part.place.empty()) continue;
+      const std::vector<std::uint32_t> meant = places_.regions("materials", part.place);
+      for (std::size_t r = 0; r < of.size(); ++r)
+        if (std::ranges::binary_search(meant, regions()[r].number)) of[r] = number(part.material);
+    }
+    put_placeholder();
+  }
+
+  void put_placeholder() {
+    std::string without;
+    for (std::size_t r = 0; r < regions().size(); ++r)
+      if (plan_.material_of[r] == job_.materials.size())
+        without += fmt::format("{}\"{}\"", without.empty() ? "" : ", ", regions()[r].name);
+    if (without.empty() || out_.options().materials.size() > 0) return;
+    plan_.materials.push_back({"placeholder", kSteelYoung, kSteelPoisson, kSteelDensity});
+    out_.note(fmt::format(
+        "PLACEHOLDER: no material is given for {}: E {}, nu {}, density {} stand there, which is steel in N, mm and t; "
+        "give yours by `materials`",
+        without, kSteelYoung, kSteelPoisson, kSteelDensity));
+  }
+
+  void plan_couplings() {
+    std::set<std::string> names;
+    for (const JobCoupling& c : job_.couplings) {
+      if (!names.insert(c.name).second) throw OptionError(fmt::format("`couple`: there are two \"{}\"", c.name));
+      JobPlan::Coupling planned{
+          .name = c.name, .part = part_of(places_.faces("couple", c.place)), .is_rigid = c.is_rigid};
+      for (const auto& [node, share] : shares_of(mesh_, mesh_.parts()[planned.part]))
+        planned.at += mesh_.mesh().points[node] * share;
+      if (c.at) planned.at = *c.at;
+      plan_.couplings.push_back(std::move(planned));
+    }
+  }
+
+  void plan_fixes() {
+    for (const JobFix& fix : job_.fixes) {
+      const auto holds = [&](char axis) { return fix.axes.empty() || fix.axes.find(axis) != std::string::npos; };
+      if (const auto point = places_.point(fix.place)) {
+        if (!fix.of_cylinder.empty())
+          throw OptionError(fmt::format("`fix`: \"{}\" is a point, and no cylinder", fix.place));
+        JobPlan::Coupling& c = plan_.couplings[*point];
+        if (!c.is_rigid)
+          throw OptionError(
+              fmt::format("`fix`: \"{}\" is distributing, and bears loads; hold a rigid point", fix.place));
+        for (std::size_t i = 0; i < 6; ++i) c.holds[i] = i < 3 ? holds("xyz"[i]) : holds('r');
+        continue;
+      }
+      if (fix.axes.find('r') != std::string::npos)
+        throw OptionError(
+            fmt::format("`fix`: \"{}\" has no rotations to hold: those of solids follow from \"xyz\"", fix.place));
+      if (!fix.of_cylinder.empty()) {
+        plan_.fixes.push_back(fix_of_cylinder(fix));
+        continue;
+      }
+      plan_.fixes.push_back({part_of(places_.anything("fix", fix.place)), {holds('x'), holds('y'), holds('z')}, {}});
+    }
+  }
+
+  JobPlan::Fix fix_of_cylinder(const JobFix& fix) const {
+    JobPlan::Fix planned{part_of(places_.faces("fix", fix.place)), {}, {}};
+    planned.cylinder = cylinder_of(triangles_of(mesh_, mesh_.parts()[planned.part]));
+    if (!planned.cylinder)
+      throw OptionError(fmt::format(
+          "`fix`: \"{}\" is no cylinder: \"radial\", \"tangential\", \"axial\" mean nothing there", fix.place));
+    constexpr std::array<std::string_view, 3> kWords{"radial", "tangential", "axial"};
+    for (std::size_t i = 0; i < kWords.size(); ++i)
+      planned.holds[i] = std::ranges::find(fix.of_cylinder, kWords[i]) != fix.of_cylinder.end();
+    return planned;
+  }
+
+  const std::string& name_of(const JobPlan::Fix& fix) const { return mesh_.parts()[fix.part].name; }
+
+  void plan_systems() {
+    std::vector<JobPlan::Fix>& fixes = plan_.fixes;
+    for (std::size_t f = 0; f < fixes.size(); ++f) {
+      if (!fixes[f].cylinder) continue;
+      for (const VertexIndex v : mesh_.nodes_of(mesh_.parts()[fixes[f].part])) {
+        const JobPlan::Fix& first = fixes[plan_.systems.try_emplace(v, f).first->second];
+        if (!share_axis(*first.cylinder, *fixes[f].cylinder)) refuse_shared(first, fixes[f]);
+      }
+    }
+    for (JobPlan::Fix& fix : fixes)
+      if (!fix.cylinder) turn(fix);
+  }
+  void turn(JobPlan::Fix& fix) const {
+    for (const VertexIndex v : mesh_.nodes_of(mesh_.parts()[fix.part])) {
+      const auto at = plan_.systems.find(v);
+      if (at == plan_.systems.end()) continue;
+      const JobPlan::Fix& other = plan_.fixes[at->second];
+      const auto holds = in_directions_of(*other.cylinder, fix.holds);
+      if (!holds) refuse_shared(fix, other);
+      fix.turned.emplace_back(v, *holds);
+    }
+  }
+  /// None where what is held is no choice of radial, tangential, axial.
+  static std::optional<std::array<bool, 3>> in_directions_of(const Cylinder& cylinder,
+                                                             const std::array<bool, 3>& holds) {
+    constexpr double kParallel = 0.9999;
+    if (holds[0] && holds[1] && holds[2]) return holds;
+    for (std::size_t k = 0; k < 3; ++k)
+      if (const bool across = holds[(k + 1) % 3];
+          std::abs(cylinder.axis[static_cast<int>(k)]) > kParallel && across == holds[(k + 2) % 3])
+        return std::array{across, across, static_cast<bool>(holds[k])};
+    return std::nullopt;
+  }
+  [[noreturn]] void refuse_shared(const JobPlan::Fix& a, const JobPlan::Fix& b) const {
+    throw OptionError(
+        fmt::format("`fix`: \"{}\" and \"{}\" share nodes, which would be held in two systems of directions; "
+                    "hold one of them in all directions, or hold faces that do not touch",
+                    name_of(a), name_of(b)));
+  }
+
+  void plan_loads() {
+    for (const JobLoad& load : job_.loads) {
+      if (const auto point = places_.point(load.place)) {
+        std::optional<Vec3>& force = plan_.couplings[*point].force;
+        force = force.value_or(Vec3{}) + load.force;
+        continue;
+      }
+      plan_.loads.push_back({part_of(places_.faces("load", load.place)), load.force});
+      for (const auto& [node, share] : shares_of(mesh_, mesh_.parts()[plan_.loads.back().part]))
+        plan_.forces[node] += load.force * share;
+    }
+  }
+
+  /// Solvers take the last of two on a face.
+  void plan_pressures() {
+    std::set<std::uint32_t> pressed;
+    for (const JobPressure& p : job_.pressures) {
+      plan_.pressures.push_back({part_of(places_.faces("pressure", p.place)), p.value});
+      for (const std::uint32_t f : mesh_.parts()[plan_.pressures.back().part].members)
+        if (!pressed.insert(f).second)
+          throw OptionError(fmt::format("`pressure`: faces of \"{}\" have another one too", p.place));
+    }
+  }
+
+  std::size_t part_of_patch(std::uint32_t patch) const {
+    const auto& parts = mesh_.parts();
+    return static_cast<std::size_t>(
+        std::ranges::find_if(parts, [&](const Part& p) { return p.origin == Origin::kPatch && p.number == patch; }) -
+        parts.begin());
+  }
+
+  struct Face {
+    double edge = 0, young = 0;  ///< of a side of a contact
+  };
+  Face side_of(std::size_t number) const {
+    const Part& part = mesh_.parts()[number];
+    double area = 0;
+    for (const auto& [a, b, c] : triangles_of(mesh_, part)) area += 0.5 * length(cross(b - a, c - a));
+    const auto at = std::ranges::find(regions(), region_at(number), &Part::number) - regions().begin();
+    const std::size_t material = plan_.material_of[static_cast<std::size_t>(at)];
+    // Of regular triangles.
+    return {std::sqrt(area / static_cast<double>(part.members.size()) * 4 / std::sqrt(3.0)),
+            material < plan_.materials.size() ? plan_.materials[material].young : kSteelYoung};
+  }
+
+  /// Contacts of parts that nobody names are tied; what is open inside a part, a crack, stays so.
+  void plan_contacts() {
+    const std::vector<OpenedContact>& opened = mesh_.mesh().opened_contacts;
+    std::vector<const JobContact*> laws(opened.size(), nullptr);
+    for (const bool default_first : {true, false})
+      for (const JobContact& asked : job_.contacts)
+        if (asked.place.empty() == default_first) take_law(asked, laws);
+    for (std::size_t i = 0; i < opened.size(); ++i) {
+      const std::array<std::size_t, 2> parts{part_of_patch(opened[i].first), part_of_patch(opened[i].second)};
+      if (std::max(parts[0], parts[1]) >= mesh_.parts().size()) continue;
+      if (laws[i] != nullptr || region_at(parts[0]) != region_at(parts[1]))
+        plan_.contacts.push_back(contact_of(parts, laws[i] != nullptr ? laws[i]->friction : std::nullopt));
+    }
+  }
+  std::uint32_t region_at(std::size_t part) const {
+    return mesh_.region_of(mesh_.sides()[mesh_.parts()[part].members[0]].tet);
+  }
+
+  void take_law(const JobContact& asked, std::vector<const JobContact*>& laws) const {
+    const std::vector<OpenedContact>& opened = mesh_.mesh().opened_contacts;
+    const std::vector<std::string>& names = mesh_.mesh().patch_names;
+    const std::vector<std::uint32_t> meant = named_so(names, asked.place);
+    bool found = asked.place.empty();
+    for (std::size_t i = 0; i < opened.size(); ++i) {
+      const auto means = [&](std::uint32_t patch) { return std::ranges::find(meant, patch) != meant.end(); };
+      if (asked.place.empty() || means(opened[i].first) || means(opened[i].second)) laws[i] = &asked, found = true;
+    }
+    if (found) return;
+    std::vector<std::string> there;
+    for (const OpenedContact& o : opened) there.push_back(patch_label(names, o.first));
+    throw OptionError(fmt::format("`friction`: {}; contacts are opened by `split`",
+                                  no_such_place(asked.place, {{"opened contact", there}})));
+  }
+
+  /// The finer side is the slave, else the softer one.
+  JobPlan::Contact contact_of(const std::array<std::size_t, 2>& parts, std::optional<double> friction) const {
+    constexpr double kSameSize = 1.05, kApart = 0.25;  // chords of curved faces leave gaps
+    const std::array<Face, 2> sides{side_of(parts[0]), side_of(parts[1])};
+    const bool alike = std::max(sides[0].edge, sides[1].edge) < kSameSize * std::min(sides[0].edge, sides[1].edge);
+    const bool second = alike ? sides[1].young < sides[0].young : sides[1].edge < sides[0].edge;
+    return {.slave = parts[second],
+            .master = parts[!second],
+            .friction = friction,
+            .edge = sides[second].edge,
+            .young = std::min(sides[0].young, sides[1].young),
+            .apart = kApart * std::max(sides[0].edge, sides[1].edge)};
+  }
+
+  void plan_bolts() {
+    for (const BoltSection& section : sections_) {
+      const auto at = std::ranges::find(regions(), section.region, &Part::number) - regions().begin();
+      plan_.pretensions.push_back({.region = static_cast<std::size_t>(at),
+                                   .force = section.force,
+                                   .middle = section.middle,
+                                   .axis = section.axis,
+                                   .nodes = nodes_of(section)});
+    }
+  }
+  std::vector<std::pair<VertexIndex, VertexIndex>> nodes_of(const BoltSection& section) const {
+    std::map<VertexIndex, VertexIndex> behind;
+    for (const auto& [n, patch] : mesh_.mesh().split_faces) {
+      if (patch != section.in_front) continue;
+      for (std::size_t k = 0; k < 3; ++k) {
+        behind[n[3 + k]] = n[k];
+        const std::size_t l = (k + 1) % 3;
+        if (mesh_.second_order()) behind[mesh_.mid_node(n[3 + k], n[3 + l])] = mesh_.mid_node(n[k], n[l]);
+      }
+    }
+    return {behind.begin(), behind.end()};
+  }
+
+  /// Solvers stop at a node that follows others, and is held or follows more.
+  void refuse_what_follows_twice() const {
+    std::map<VertexIndex, std::string> follows;
+    const auto follow = [&](VertexIndex v, const std::string& what) {
+      if (const auto [at, is_new] = follows.try_emplace(v, what); !is_new) refuse_both(at->second, what);
+    };
+    for (const JobPlan::Coupling& c : plan_.couplings)
+      for (const VertexIndex v : mesh_.nodes_of(mesh_.parts()[c.part]))
+        if (c.is_rigid) follow(v, c.name);
+    for (const JobPlan::Pretension& p : plan_.pretensions)
+      for (const auto& [in_front, behind] : p.nodes) follow(in_front, "section of " + mesh_.parts()[p.region].name);
+    for (const JobPlan::Fix& fix : plan_.fixes)
+      for (const VertexIndex v : mesh_.nodes_of(mesh_.parts()[fix.part]))
+        if (const auto at = follows.find(v); at != follows.end()) refuse_both(at->second, name_of(fix));
+  }
+  [[noreturn]] static void refuse_both(const std::string& a, const std::string& b) {
+    throw OptionError(
+        fmt::format("\"{}\" and \"{}\" share nodes, which would follow a point or section, and be held or "
+                    "follow another: take faces that do not touch, or make the point distributing",
+                    a, b));
+  }
+
+  void plan_gravity() {
+    plan_.gravity = job_.gravity;
+    for (std::size_t r = 0; r < regions().size(); ++r)
+      if (const std::size_t m = plan_.material_of[r]; m == plan_.materials.size() || !plan_.materials[m].density)
+        throw OptionError(fmt::format("`gravity`: the material of \"{}\" has no \"density\"", regions()[r].name));
+  }
+
+  void note_what_lacks() {
+    const bool is_held = !plan_.fixes.empty() || std::ranges::any_of(plan_.couplings, [](const auto& c) {
+      return c.holds[0] || c.holds[1] || c.holds[2];
+    });
+    if (!is_held) out_.note("the job holds nothing: say what is held, by `fix`, or it has no answer");
+    if (!plan_.has_loads() && plan_.pretensions.empty())
+      out_.note("the job has no loads: `load`, `pressure`, `gravity`, `pretension`");
+  }
+
+  MeshOutput& out_;
+  const MeshParts& mesh_;
+  const SolverJob& job_;
+  const std::vector<BoltSection>& sections_;
+  JobPlaces places_;
+  JobPlan plan_;
+};
+
+/// The sets that places need and the mesh lacks.
+void add_sets(std::optional<TetMesh>& changed, const TetMesh& mesh, const SolverJob& job) {
+  const MeshParts parts(mesh);
+  const JobPlaces places(mesh, parts, job);
+  std::vector<NamedSet> sets;
+  places.for_each([&](const std::string& name, Wanted wanted) {
+    const auto is_it = [&](const NamedSet& set) { return set.kind == wanted.kind && set.members == wanted.members; };
+    if (!places.part(wanted) && std::ranges::none_of(sets, is_it))
+      sets.push_back({name, wanted.kind, std::move(wanted.members)});
+  });
+  if (sets.empty()) return;
+  if (!changed) changed = mesh;
+  changed->sets.insert(changed->sets.end(), sets.begin(), sets.end());
+}
+
+}  // namespace
+
+bool JobPlan::has_loads() const {
+  return !loads.empty() || !pressures.empty() || gravity ||
+         std::ranges::any_of(couplings, [](const Coupling& c) { return c.force.has_value(); });
+}
+
+bool JobPlan::slides() const {
+  return std::ranges::any_of(contacts, [](const Contact& c) { return c.friction.has_value(); });
+}
+
+JobMesh mesh_for_job(const TetMesh& mesh, const SolverJob& job) {
+  JobMesh made;
+  for (const JobPretension& bolt : job.pretensions) {
+    if (!made.changed) made.changed = mesh;
+    const MeshParts parts(*made.changed);
+    for (const std::uint32_t region : JobPlaces(*made.changed, parts, job).regions("pretension", bolt.region)) {
+      made.sections.push_back(open_bolt(*made.changed, region));
+      made.sections.back().force = bolt.force;
+    }
+  }
+  add_sets(made.changed, made.changed ? *made.changed : mesh, job);
+  return made;
+}
+
+JobPlan plan_job(MeshOutput& out, const MeshParts& mesh, const SolverJob& job,
+                 const std::vector<BoltSection>& sections) {
+  return Planner(out, mesh, job, sections).plan();
+}
+
+}  // namespace octafront::io
