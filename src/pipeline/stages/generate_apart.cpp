@@ -247,7 +247,7 @@ void add(SecondOrderSummary& all, const SecondOrderSummary& more, TetIndex first
 /// Stages of one name become one; what they say is said with the part's name.
 void add_stages(std::vector<StageReport>& all, const StageReport& more, const std::string& part) {
   auto at = std::ranges::find(all, more.name, &StageReport::name);
-  if (at == all.end()) at = all.insert(at, StageReport{more.name});
+  if (at == all.end()) at = all.insert(at, StageReport{.name = more.name, .counters = {}, .notes = {}, .findings = {}});
   at->wall_seconds += more.wall_seconds, at->cpu_seconds += more.cpu_seconds;
   for (const auto& [key, value] : more.counters) {
     const auto counter = std::ranges::find(at->counters, key, [](const auto& c) { return c.first; });
@@ -281,7 +281,8 @@ void take_volumes(Report& all, const std::vector<Report>& parts, const std::vect
   for (std::size_t k = 0; k < parts.size(); ++k) {
     all.volume += parts[k].volume, all.true_volume += parts[k].true_volume;
     std::vector<RegionSummary> regions = parts[k].regions;
-    if (regions.empty()) regions.push_back({names[k], parts[k].volume, 0, parts[k].input_volume, parts[k].true_volume});
+    if (regions.empty())
+      regions.push_back({names[k], parts[k].volume, 0, parts[k].input_volume, parts[k].true_volume, 0, {}});
     for (const RegionSummary& of_part : regions) {
       const auto at = std::ranges::find(all.regions, of_part.name, &RegionSummary::name);
       if (at == all.regions.end()) continue;
