@@ -87,6 +87,7 @@ Domain open_input(Session& session, const IntakeOptions& options) {
   };
   try {
     Domain domain = open_domain(in_utf8(a.bodies), told, session.context());
+    if (domain.unit.empty()) domain.unit = a.unit;
     session.found(Json::parse(to_json(domain)));
     session.frame = domain.frame;
     if (!a.defects.empty() && !domain.repairs.empty())

@@ -412,6 +412,7 @@ const std::vector<OptionGroup>& option_groups() {
       {"Repair", "repair", "Surfaces that cannot be meshed as they are"},
       {"CAD", "cad", "STEP, IGES, BREP"},
       {"Periodic cell", "periodic", ""},
+      {"Flows", "flows", ""},
       {"Paper", "paper", "Of the methods that this program began with; few need them"},
       {"Run", "run", ""}};
   return groups;

@@ -43,10 +43,13 @@ bool takes_parts(const Arguments& a, std::size_t i) {
 /// How the output of this number is written.
 WriteOptions options_of(const Arguments& a, std::size_t i) {
   WriteOptions options = a.writing;
+  if (a.command == "mesh") options.speed = a.options.layers.speed, options.fluid = a.options.layers.fluid;
   if (!a.formats.empty()) options.format = a.formats[i];
-  // Beside a job other outputs are the mesh alone.
-  if (a.meshes.size() > 1 && !format_for(a.meshes[i].string(), {.format = options.format}).holds.jobs)
-    options.job.reset();
+  if (a.meshes.size() > 1) {  // beside a job or a case other outputs are the mesh alone
+    const FormatInfo& format = format_for(a.meshes[i].string(), {.format = options.format});
+    if (!format.holds.jobs) options.job.reset();
+    if (format.name != "openfoam") options.deck = false;
+  }
   if (!takes_parts(a, i)) options.parts = 0, options.partitioner = Partitioner::kCurve, options.split_files = false;
   return options;
 }

@@ -128,6 +128,11 @@ struct IntakeOptions {
   std::string contacts = {};
   /// Rules with semicolons between (ContactChoice::Rule), "A|B=split", or files with one in each line.
   std::string contact = {};
+  /// A flow around what comes in: "X0,Y0,Z0:X1,Y1,Z1" is a box whose faces are the patches inlet (least x), outlet,
+  /// side_right (least y), side_left, ground (least z) and top; what is meshed is the box without the bodies. "auto":
+  /// by the body's length L along x, 5 L before, 10 L behind, 5 L to all sides; "ground": the same, but the body stands
+  /// on the ground. Empty: none.
+  std::string wind_tunnel = {};
   ImageIntake image;
   CadIntake cad;
   InsideIntake inside;
@@ -182,6 +187,11 @@ struct Domain {
   std::vector<double> true_volumes = {};
   /// Of CAD, per region: chords no deeper than this keep its volume within a percent, about. Empty: not known.
   std::vector<double> chord_depths = {};
+
+  /// Of a wind tunnel: how many of the first patches are the body's, and its length along the flow. generate() chooses
+  /// sizes and layers by them. 0: there is none.
+  std::size_t body_patches = 0;
+  double body_length = 0;
 
   /// Voxels of the image along i, j and k, as they were taken.
   std::array<std::uint32_t, 3> voxels = {0, 0, 0};

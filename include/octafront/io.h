@@ -88,6 +88,10 @@ struct WriteOptions {
   /// The dual: a polyhedron for each vertex (poly_mesh.h), of formats that hold them. Values at vertices are those of
   /// its cells.
   bool polyhedral = false;
+  /// OpenFOAM: around CASE/constant/polyMesh the rest of a case for simpleFoam, which has none yet; needs `speed`.
+  bool deck = false;
+  std::optional<double> speed = {};  ///< of the flow at the inlet, m/s, for `deck`
+  std::string fluid = "air";         ///< viscosity_of() of octafront/options.h, for `deck`
   bool cohesive = false;   ///< elements of no height (COH3D6) between the two sides of faces that were split: Abaqus
   std::string beams = {};  ///< names of curves, separated by commas, that are beams, too (B31, B32): Abaqus
   std::vector<SetMaterial> materials = {};  ///< of sets of the mesh. Abaqus: of "E" *ELASTIC and *SOLID SECTION, else a

@@ -162,6 +162,10 @@ struct LayersOptions {
   /// The first height by the wall distance y+ that it shall have in a turbulent flow along a flat plate, whose Reynolds
   /// number belongs to a length: skin friction of .026 Re^(-1/7) (F. White, Fluid Mechanics).
   std::optional<double> yplus, reynolds, reference_length;
+  /// Or by a speed, m/s, of a fluid, viscosity_of(), and `reference_length`; without that the body's in a wind tunnel,
+  /// else the input's longest side. Coordinates count Domain::unit, metres where that is not known.
+  std::optional<double> speed;
+  std::string fluid = "air";
   std::string on;  ///< names of the patches that are walls, separated by commas; empty: all patches
   std::string in;  ///< names of the regions that they grow in, separated by commas; empty: all regions
   /// They grow on the outside instead, where they make a shell around the mesh: a region of its own.
@@ -171,6 +175,10 @@ struct LayersOptions {
   /// Percent of the faces of each wall that must have all layers, as high as asked; MeshingError otherwise.
   std::optional<double> require_coverage;
 };
+
+/// Kinematic viscosity, m2/s, of "air" (1.5e-5) or "water" (1e-6) at 20 degrees, or the number that the text is. Throws
+/// OptionError.
+double viscosity_of(const std::string& fluid);
 
 /// How the volume is filled.
 struct VolumeOptions {

@@ -130,6 +130,17 @@ PolyMesh made_with(const dual::Primal& primal, const std::vector<dual::Ridges>& 
   return mesh;
 }
 
+/// With a vertex its whole column is divided, or not: else layers of either kind would stand on each other.
+void choose_by_column(const dual::LayerCells& layers, const std::vector<dual::Ridges>& before,
+                      std::vector<dual::Ridges>& ridges) {
+  for (bool again = true; again;) {
+    again = false;
+    for (const auto& [lower, upper] : layers.uprights())
+      for (const auto& [from, to] : {std::pair(lower, upper), {upper, lower}})
+        if (ridges[from] != before[from] && ridges[to] != ridges[from]) ridges[to] = ridges[from], again = true;
+  }
+}
+
 /// Of cells at fault: those that are divided are to be left whole, or others to be divided at all features.
 std::vector<dual::Ridges> chosen_otherwise(const PolyMesh& mesh, std::span<const std::uint32_t> cells, bool divided,
                                            std::vector<dual::Ridges> ridges) {
@@ -158,6 +169,7 @@ PolyMesh dual_mesh(const TetMesh& mesh, const RunContext& context) {
   dual::PolyFaults faults = dual::faults_of(best);
   for (int i = 0; i < kTries && !faults.cells.empty(); ++i) {
     std::vector<dual::Ridges> others = chosen_otherwise(best, faults.cells, i % 2 != 0, ridges);
+    choose_by_column(primal.layers, ridges, others);
     if (others == ridges) continue;
     PolyMesh other = made_with(primal, others, context);
     dual::PolyFaults of_other = dual::faults_of(other);

@@ -40,6 +40,8 @@ class LayerCells {
   /// The face that the lowest layer below it stands on.
   HalfFace ground_of(std::span<const HalfFace> across, const LayerCell& cell) const;
   bool is_upright(VertexIndex lower, VertexIndex upper) const;
+  /// From each vertex of a column to the one above it, sorted.
+  std::span<const Edge> uprights() const { return uprights_; }
   /// Of a half-face that stands: where it ends above, an edge.
   std::optional<Edge> top_of_side(std::span<const Tet> tets, HalfFace h) const;
 

@@ -103,6 +103,13 @@ std::vector<Row<IntakeOptions>> cell_rows() {
               .takes("X0,Y0,Z0,X1,Y1,Z1")
               .without("of a formula one cell of it, from the origin on"),
           [](auto& o) -> auto& { return o.box; }),
+      intake_row(
+          about_intake("wind_tunnel", "Flows",
+                       "Mesh what flows around the bodies, in a box with the patches inlet, outlet, side_right, "
+                       "side_left, ground and top; auto: 5 lengths before, 10 behind, 5 to all sides; ground: the "
+                       "same, on the ground")
+              .takes("auto|ground|X0,Y0,Z0:X1,Y1,Z1"),
+          [](auto& o) -> auto& { return o.wind_tunnel; }),
   };
 }
 

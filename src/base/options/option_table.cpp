@@ -197,7 +197,7 @@ std::vector<Row<Options>> layer_rows() {
       row(
           of("yplus",
              "Height of the first layer by its y+ in a turbulent flow along a flat plate, with `Re` and "
-             "`Lref`")
+             "`Lref`, or `speed` and `fluid`")
               .takes("Y")
               .above(0),
           [](auto& o) -> auto& { return o.layers.yplus; }),
@@ -205,8 +205,20 @@ std::vector<Row<Options>> layer_rows() {
           of("Re", "Reynolds number of the flow, for `yplus`").called("reynolds").takes("RE").above(0),
           [](auto& o) -> auto& { return o.layers.reynolds; }),
       row(
-          of("Lref", "Length that the Reynolds number belongs to").called("reference_length").length("L").above(0),
+          of("Lref",
+             "Length that the Reynolds number belongs to, or `speed`: then without it the body's, or the input's")
+              .called("reference_length")
+              .length("L")
+              .above(0),
           [](auto& o) -> auto& { return o.layers.reference_length; }),
+      row(
+          of("speed", "Speed of the flow, m/s: for `yplus`, and at the inlet of an OpenFOAM `deck`")
+              .takes("U")
+              .above(0),
+          [](auto& o) -> auto& { return o.layers.speed; }),
+      row(
+          of("fluid", "air, water, or a kinematic viscosity in m2/s: what flows").takes("NAME|NU"),
+          [](auto& o) -> auto& { return o.layers.fluid; }),
       row(
           of("on", "Walls that get layers, places with commas between: patches, or regions for the walls around them")
               .takes("PLACES")

@@ -33,6 +33,21 @@ const std::vector<Row<WriteOptions>>& write_rows() {
                         "(OpenFOAM, CGNS, VTU)"),
           [](auto& o) -> auto& { return o.polyhedral; }),
       write_row(
+          about_writing(
+              "deck",
+              "OpenFOAM: also the rest of a case for simpleFoam around CASE/constant/polyMesh, by `speed` and "
+              "`fluid`; an old one stays"),
+          [](auto& o) -> auto& { return o.deck; }),
+      write_row(
+          About("speed", "Output", "improve adapt convert", "Speed of the flow at the inlet, m/s, for `deck`")
+              .takes("U")
+              .above(0),
+          [](auto& o) -> auto& { return o.speed; }),
+      write_row(
+          About("fluid", "Output", "improve adapt convert", "air, water, or a kinematic viscosity in m2/s, for `deck`")
+              .takes("NAME|NU"),
+          [](auto& o) -> auto& { return o.fluid; }),
+      write_row(
           about_writing("cohesive",
                         "Cohesive elements of no height between the two sides of what was split (Abaqus: COH3D6)"),
           [](auto& o) -> auto& { return o.cohesive; }),

@@ -86,6 +86,7 @@ std::optional<Vec3> Shapes::nearest_on_face(std::uint32_t patch, Vec3 p) const {
 }
 
 std::uint32_t Shapes::part_at(std::uint32_t patch, Vec3 p) const {
+  if (patch >= groups_.size()) return kNone;
   const Group& group = groups_[patch];
   const TriangleTree::Nearest found = group.tree.nearest(millimetres_ * p);
   return found.triangle == kNone ? kNone : model_.face_of[group.triangles[found.triangle]];

@@ -112,6 +112,7 @@ class Inside {
 }  // namespace
 
 Domain with_inside(Domain domain, const IntakeOptions& options, const RunContext& context) {
+  domain = in_tunnel(std::move(domain), options, context);
   Inside inside(domain, options, context);
   inside.read();
   inside.embed();

@@ -48,6 +48,10 @@ void take_image(Domain& domain, const IntakeOptions& options, const Image& image
 /// The domain with the sheets, lines and points that the options want inside.
 Domain with_inside(Domain domain, const IntakeOptions& options, const RunContext& context);
 
+/// In the place of the domain what lies around it in the wind tunnel that the options ask for; as it is if they ask for
+/// none.
+Domain in_tunnel(Domain domain, const IntakeOptions& options, const RunContext& context);
+
 /// Throws OptionError if something is asked of formulas, for an input `name` that is none.
 void refuse_formula_options(const FormulaIntake& formula, const std::string& name);
 

@@ -5,7 +5,6 @@
 #include "formats/containers/scanner.h"
 
 #include <algorithm>
-#include <array>
 #include <filesystem>
 #include <fstream>
 #include <sstream>
@@ -13,13 +12,6 @@
 namespace octafront {
 
 namespace {
-
-constexpr std::array kUnits{LengthUnit{"um", 1e-6, " micrometers micrometres microns micron "},
-                            LengthUnit{"mm", 1e-3, " millimeters millimetres millimeter millimetre "},
-                            LengthUnit{"cm", 1e-2, " centimeters centimetres centimeter centimetre "},
-                            LengthUnit{"m", 1, " meters metres meter metre "},
-                            LengthUnit{"in", 0.0254, " inches inch "},
-                            LengthUnit{"ft", 0.3048, " feet foot "}};
 
 /// Of several images in a file all have the unit of the first.
 std::string unit_of_image(const std::string& file) {
@@ -38,17 +30,6 @@ std::string beginning_of(const std::string& file) {
 }
 
 }  // namespace
-
-std::span<const LengthUnit> length_units() {
-  return kUnits;
-}
-
-const LengthUnit* unit_named(const std::string& name) {
-  for (const LengthUnit& unit : kUnits)
-    if (unit.name == name || (!name.empty() && unit.words.find(" " + name + " ") != std::string_view::npos))
-      return &unit;
-  return nullptr;
-}
 
 std::string unit_of_file(const std::string& file) {
   std::error_code error;

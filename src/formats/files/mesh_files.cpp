@@ -11,6 +11,7 @@
 #include "formats/parts/mixed_cells.h"
 #include "formats/parts/pieces.h"
 #include "formats/parts/raw_mesh.h"
+#include "formats/write/foam_case.h"
 
 #include <algorithm>
 #include <optional>
@@ -80,6 +81,8 @@ void check_polyhedral(const io::Format& format, const WriteOptions& options) {
 void check_options(const io::Format& format, const WriteOptions& options) {
   check_parts(format, options);
   check_polyhedral(format, options);
+  if (options.deck && format.info.name != "openfoam")
+    throw OptionError(fmt::format("{} has no decks here; `deck` is for OpenFOAM", format.info.title));
   if (options.job && !format.info.holds.jobs)
     throw OptionError(fmt::format("{} is no job of a solver here; `job` is for {}", format.info.title,
                                   names_that([](const io::Format& f) { return f.info.holds.jobs; })));
@@ -166,6 +169,7 @@ TetMesh read_mesh(const std::string& file, const RunContext& context) {
 void check_mesh_target(const std::string& file, const WriteOptions& options) {
   const io::Format& format = mesh_format(file, options.format);
   check_options(format, options);
+  io::check_foam_case(file, options);
   if (in_parts(format, options) && format.check_parts != nullptr)
     return format.check_parts(file, std::max(options.parts, 1U));
   format.is_folder ? io::check_folder_writable(file) : io::check_writable(file);

@@ -3,6 +3,7 @@
 #include "base/core/parallel.h"
 #include "base/mesh/face_table.h"
 #include "formats/parts/legal_names.h"
+#include "formats/write/foam_case.h"
 
 #include <algorithm>
 #include <tuple>
@@ -110,10 +111,13 @@ void put_face_zones(const FoamFiles& files, const MeshParts& mesh, std::span<con
 }
 
 void put_patch(TextWriter& out, const std::string& name, const MeshParts& mesh, const Part& patch, std::size_t faces,
-               std::size_t first) {
+               std::size_t first, bool is_case) {
   const std::string original = name == patch.name ? "" : fmt::format(" // \"{}\"", one_line(patch.name));
   out.line("    {}\n    {{\n        type {};{}\n        nFaces {};\n        startFace {};\n    }}", name,
-           is_wall(mesh, patch) ? "wall" : "patch", original, faces, first);
+           is_case                ? foam_type_of(name)
+           : is_wall(mesh, patch) ? "wall"
+                                  : "patch",
+           original, faces, first);
 }
 
 InterfacePatches::InterfacePatches(const MeshParts& mesh) : is_listed_(mesh.mesh().points.size(), false) {

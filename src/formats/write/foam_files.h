@@ -29,6 +29,7 @@ struct FoamFiles {
   std::filesystem::path folder;
   std::string location;
   RunContext context;
+  bool is_case = false;  ///< patches get types by their names
 
   void file(const std::string& name, std::string_view type, const std::function<void(TextWriter&)>& write) const;
   /// A list of so many values in lines of their own.
@@ -77,7 +78,7 @@ void put_face_zones(const FoamFiles& files, const MeshParts& mesh, std::span<con
 
 /// An entry of `boundary`; `name` is the legal one.
 void put_patch(TextWriter& out, const std::string& name, const MeshParts& mesh, const Part& patch, std::size_t faces,
-               std::size_t first);
+               std::size_t first, bool is_case);
 
 /// A face between two cells.
 struct FoamFace {

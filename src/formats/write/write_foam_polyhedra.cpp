@@ -1,5 +1,6 @@
 // The polyMesh folder of write_openfoam.cpp, of polyhedra.
 
+#include "formats/write/foam_case.h"
 #include "formats/write/foam_files.h"
 #include "formats/write/writers.h"
 
@@ -30,8 +31,8 @@ void write_boundary(const FoamFiles& files, const MeshParts& parts, std::span<co
   files.file("boundary", "polyBoundaryMesh", [&](TextWriter& out) {
     out.line("{}\n(", stretches.size());
     for (const Stretch& s : stretches)
-      put_patch(out, names[static_cast<std::size_t>(s.patch - parts.parts().data())], parts, *s.patch, s.faces,
-                s.first);
+      put_patch(out, names[static_cast<std::size_t>(s.patch - parts.parts().data())], parts, *s.patch, s.faces, s.first,
+                files.is_case);
     out << ")\n";
   });
 }
@@ -39,7 +40,7 @@ void write_boundary(const FoamFiles& files, const MeshParts& parts, std::span<co
 }  // namespace
 
 void write_openfoam_polyhedra(MeshOutput& out, const MeshParts& parts, const PolyMesh& mesh) {
-  const FoamFiles files{out.folder(), kFoamLocation, out.context()};
+  const FoamFiles files{out.folder(), kFoamLocation, out.context(), out.options().deck};
   const std::vector<std::string> names =
       legal_names(out, parts, kFoamNames, std::array{Part::Origin::kRegion, Part::Origin::kPatch});
   files.points(mesh.points.size(), [&](std::size_t p) { return mesh.points[p]; });
@@ -48,6 +49,7 @@ void write_openfoam_polyhedra(MeshOutput& out, const MeshParts& parts, const Pol
       visit(mesh.face(f), mesh.owner[f], f < mesh.inner_faces() ? mesh.neighbour[f] : kNone);
   });
   write_boundary(files, parts, names, mesh);
+  write_foam_case(out, parts, names);
   std::map<std::uint32_t, std::vector<std::uint32_t>> cells;
   for (std::uint32_t c = 0; c < mesh.cells(); ++c) cells[mesh.region[c]].push_back(c);
   put_cell_zones(files, parts, names, cells);

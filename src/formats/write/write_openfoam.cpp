@@ -13,6 +13,7 @@
 #include "base/mesh/adjacency.h"
 #include "formats/containers/text_writer.h"
 #include "formats/parts/mixed_cells.h"
+#include "formats/write/foam_case.h"
 #include "formats/write/foam_files.h"
 #include "formats/write/writers.h"
 
@@ -299,7 +300,7 @@ class FoamMesh {
       out.line("{}\n(", patches_.size() + of_neighbours_.size());
       std::size_t first = inner_;
       for (const auto& [patch, size] : patches_) {
-        put_patch(out, whole_.name(*patch), whole_.mesh, *patch, size, first);
+        put_patch(out, whole_.name(*patch), whole_.mesh, *patch, size, first, files.is_case);
         first += size;
       }
       for (const auto& [part, faces] : of_neighbours_) {
@@ -379,7 +380,8 @@ fs::path case_of(const fs::path& target) {
 void write_openfoam(MeshOutput& out, const MeshParts& mesh) {
   const MixedCells cells(mesh);
   const FoamWhole whole(out, mesh, cells);
-  FoamMesh(whole).write({out.folder(), kFoamLocation, out.context()});
+  FoamMesh(whole).write({out.folder(), kFoamLocation, out.context(), out.options().deck});
+  write_foam_case(out, mesh, whole.names);
 }
 
 void write_openfoam_parts(MeshOutput& out, Pieces& pieces) {

@@ -34,7 +34,8 @@ namespace octafront {
 namespace {
 
 /// What a domain asks for beside what the user does.
-Options suited(const Domain& domain, const Options& asked) {
+Options suited(const Domain& domain, const Options& typed) {
+  const Options asked = options_for_flow(domain, typed);
   if (domain.geometry) return options_for_geometry(domain, asked);
   return domain.voxel_spacing > 0 ? options_for_voxels(asked, domain.voxel_spacing) : asked;
 }

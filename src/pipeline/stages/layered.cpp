@@ -203,23 +203,24 @@ void take_sources(const Prepared& input, Remeshed& boundary) {
 
 void check_layer_options(const Options& options) {
   const LayersOptions& o = options.layers;
-  const bool has_flow = o.yplus || o.reynolds || o.reference_length;
+  const bool has_flow = o.yplus || o.reynolds || (o.reference_length && !o.speed);
   if (o.count == 0) {
     require_layers(!o.first && !o.first_part && !o.growth && !o.total && !has_flow && o.on.empty() && o.in.empty() &&
                        !o.outside && !o.require_coverage && !o.as_tets,
                    "boundary layers are described, but none are asked for: give `count`");
     return;
   }
-  require_layers(!has_flow || (o.yplus && o.reynolds && o.reference_length),
-                 "`yplus`, `reynolds` and `reference_length` go together");
+  require_layers(!has_flow || (o.yplus && (o.speed || (o.reynolds && o.reference_length))),
+                 "`yplus` goes with `speed`, or with `reynolds` and `reference_length`");
   require_layers(o.first.has_value() + o.first_part.has_value() + o.yplus.has_value() <= 1,
                  "the height of the first boundary layer is given more than once: `first`, `first_part` or `yplus`");
   require_layers(o.first || o.first_part || o.yplus || o.total,
                  "how high are the boundary layers to be? Give `first`, `first_part`, `yplus` or `total`");
   require_layers(!(o.total && o.first_part),
                  "`total` of boundary layers goes with `first` or `yplus`, not with `first_part`");
-  require_layers(!(o.growth && o.total && absolute_first(o)),
+  require_layers(!(o.growth && o.total && (o.first || o.yplus)),
                  "`growth`, the first height and `total` of boundary layers are one too many: give two of them");
+  if (o.yplus && !o.reynolds) return;
   if (const auto first = absolute_first(o); first && o.total) {
     const double ratio = *o.total / *first;
     require_layers(ratio >= o.count && ratio <= layers::total_height(kMostGrowth, static_cast<std::uint32_t>(o.count)),

@@ -14,6 +14,8 @@ namespace octafront {
 /// The options for a domain of CAD: lines are borders of patches, so that features by angle are those that a face has
 /// within itself; for sizes and layers parts and groups become their patches and regions.
 Options options_for_geometry(const Domain& domain, Options options);
+/// Of a body in a wind tunnel its sizes, layers on it, and the Reynolds number of a flow of given speed.
+Options options_for_flow(const Domain& domain, Options options);
 
 /// The names of the patches that have a triangle: of a file whose solids are meshed one by one not all do.
 std::set<std::string> names_with_triangles(const SurfaceMesh& surface);

@@ -5,7 +5,10 @@
 
 #include <limits>
 #include <set>
+#include <sstream>
+#include <string>
 
+#include <fmt/core.h>
 #include <gtest/gtest.h>
 
 namespace octafront {
@@ -53,11 +56,13 @@ TEST(OptionTable, WhatIsSetIsThereAndNothingElseChanges) {
 }
 
 TEST(OptionTable, NamesAreThereOnceAndSayWhatTheyAre) {
-  std::set<std::string_view> names;
+  std::set<std::string> names;
   std::vector<OptionInfo> all = option_table();
   for (const auto* table : {&intake_table(), &write_table()}) all.insert(all.end(), table->begin(), table->end());
   for (const OptionInfo& info : all) {
-    EXPECT_TRUE(names.insert(info.name).second) << info.name;
+    std::istringstream tasks{std::string(info.tasks)};
+    for (std::string task; tasks >> task;)
+      EXPECT_TRUE(names.insert(fmt::format("{} of {}", info.name, task)).second) << info.name;
     EXPECT_FALSE(info.help.empty() || info.group.empty() || info.tasks.empty()) << info.name;
     EXPECT_FALSE(info.kind == OptionInfo::Kind::kChoice && info.choices.empty()) << info.name;
     EXPECT_TRUE(info.kind == OptionInfo::Kind::kFlag || !info.choices.empty() || !info.letter.empty()) << info.name;

@@ -1,0 +1,29 @@
+#include <octafront/units.h>
+
+#include <array>
+
+namespace octafront {
+
+namespace {
+
+constexpr std::array kUnits{LengthUnit{"um", 1e-6, " micrometers micrometres microns micron "},
+                            LengthUnit{"mm", 1e-3, " millimeters millimetres millimeter millimetre "},
+                            LengthUnit{"cm", 1e-2, " centimeters centimetres centimeter centimetre "},
+                            LengthUnit{"m", 1, " meters metres meter metre "},
+                            LengthUnit{"in", 0.0254, " inches inch "},
+                            LengthUnit{"ft", 0.3048, " feet foot "}};
+
+}  // namespace
+
+std::span<const LengthUnit> length_units() {
+  return kUnits;
+}
+
+const LengthUnit* unit_named(const std::string& name) {
+  for (const LengthUnit& unit : kUnits)
+    if (unit.name == name || (!name.empty() && unit.words.find(" " + name + " ") != std::string_view::npos))
+      return &unit;
+  return nullptr;
+}
+
+}  // namespace octafront
