@@ -335,7 +335,7 @@ class Planner {
     if (found) return;
     std::vector<std::string> there;
     for (const OpenedContact& o : opened) there.push_back(patch_label(names, o.first));
-    throw OptionError(fmt::format("`friction`: {}; contacts are opened by `split`",
+    throw OptionError(fmt::format("`friction`: {}; open them by `contacts` split",
                                   no_such_place(asked.place, {{"opened contact", there}})));
   }
 
