@@ -132,9 +132,8 @@ class FoamCase {
   std::string eddy_viscosity() const {
     const std::string any = "type calculated; value uniform 0;";
     const std::string wall = "type nutUSpaldingWallFunction; value uniform 0;";
-    std::string text = field("nut", "volScalarField", "[0 2 -1 0 0 0 0]", fmt::format("{:.9g}", kViscosityRatio * nu_),
-                             {any, any, wall, wall});
-    return text;
+    return field("nut", "volScalarField", "[0 2 -1 0 0 0 0]", fmt::format("{:.9g}", kViscosityRatio * nu_),
+                 {any, any, wall, wall});
   }
 
   std::string forces() const {

@@ -59,13 +59,9 @@ std::vector<std::uint32_t> meant(const std::string& rule, const std::vector<Part
 }
 
 [[noreturn]] void refuse(const std::string& rule, const std::vector<PartContact>& contacts) {
-  constexpr std::size_t kMost = 20;
-  std::string listed;
-  for (std::size_t c = 0; c < std::min(kMost, contacts.size()); ++c)
-    listed += (c > 0 ? ", " : "") + fmt::format("\"{}\"", contacts[c].name);
-  throw OptionError(fmt::format(
-      "`contact`: there is no contact \"{}\"; {}", rule,
-      contacts.empty() ? "no two parts touch" : "there are " + listed + (contacts.size() > kMost ? ", ..." : "")));
+  std::vector<std::string> names;
+  for (const PartContact& contact : contacts) names.push_back(contact.name);
+  throw OptionError(fmt::format("`contact`: {}", no_such_place(rule, {{"contact", names}})));
 }
 
 }  // namespace
