@@ -3,7 +3,6 @@
 #include <octafront/error.h>
 #include <octafront/split.h>
 
-#include "base/core/wording.h"
 #include "base/geometry/true_geometry.h"
 #include "base/mesh/complex.h"
 #include "base/mesh/complex_patches.h"
