@@ -3,6 +3,7 @@
 #include <octafront/image_surface.h>
 
 #include "base/core/elementary.h"
+#include "base/geometry/measures.h"
 #include "images/labels/thinness.h"
 
 #include <algorithm>
@@ -27,6 +28,8 @@ constexpr double kElementsPerFace = 10;
 constexpr double kMostlyThin = 0.2;
 /// Beyond so many times what is allowed: a budget is met within that.
 constexpr double kNearBudget = 1.3;
+/// Who gives a size may get so many times the elements that it asks for.
+constexpr double kTimesAsked = 3;
 /// How the number of faces falls with the spacing, at least by measure; and the least step of it.
 constexpr double kFallOfFaces = 3, kLeastStep = 1.05;
 
@@ -37,6 +40,15 @@ LabelImage bands_of(const Image& image, const ImageRegions& regions, const RunCo
 
 double elements_of(const image::Thinness& found) {
   return kElementsPerFace * static_cast<double>(found.faces);
+}
+
+/// Elements of the size that fill what is in a band.
+double needed_for(double size, const LabelImage& bands) {
+  const ImageGrid& grid = bands.grid;
+  const double voxel = std::abs(dot(cross(grid.axes[0], grid.axes[1]), grid.axes[2]));
+  const auto outside = std::ranges::count(bands.regions, LabelImage::kNoRegion);
+  return static_cast<double>(bands.regions.size() - static_cast<std::size_t>(outside)) * voxel /
+         (kRegularTet * size * size * size);
 }
 
 /// Per band, its part of the image.
@@ -66,31 +78,36 @@ Vec3 spacing_along(const ImageGrid& grid) {
 
 std::optional<Image> coarsened_for_budget(const Image& image, const ImageIntake& asked, const ImageRegions& regions,
                                           const RunContext& context) {
-  if (!std::isfinite(asked.most_elements) || regions.bands.empty() ||
+  const bool has_size = asked.size && *asked.size > 0;
+  if ((!std::isfinite(asked.most_elements) && !has_size) || regions.bands.empty() ||
       kind_of(image, regions) != ImageRegions::Kind::kGrey)
     return {};
   const LabelImage bands = bands_of(image, regions, context);
+  const double most = has_size ? kTimesAsked * needed_for(*asked.size, bands) : asked.most_elements;
   const image::Thinness found = image::thinness_of(bands);
   const double elements = elements_of(found);
-  if (found.part() < kMostlyThin || elements < kNearBudget * asked.most_elements) return {};
+  if (found.part() < kMostlyThin || elements < kNearBudget * most) return {};
   const Vec3 own = spacing_along(image.grid);
-  double spacing = std::min({own.x, own.y, own.z}), beyond = elements / asked.most_elements;
+  const double coarsest = has_size ? *asked.size : HUGE_VAL;
+  double spacing = std::min({own.x, own.y, own.z}), beyond = elements / most;
+  if (spacing >= coarsest) return {};
   Image made;
   LabelImage coarse;
-  while (beyond > 1) {
-    spacing *= std::max(kLeastStep, elementary::pow(beyond, 1 / kFallOfFaces));
+  while (beyond > 1 && spacing < coarsest) {
+    spacing = std::min(coarsest, spacing * std::max(kLeastStep, elementary::pow(beyond, 1 / kFallOfFaces)));
     made = resampled(image, {std::max(spacing, own.x), std::max(spacing, own.y), std::max(spacing, own.z)}, false,
                      context);
     coarse = bands_of(made, regions, context);
-    beyond = elements_of(image::thinness_of(coarse)) / asked.most_elements;
+    beyond = elements_of(image::thinness_of(coarse)) / most;
   }
   made.notes = image.notes;
   made.notes.push_back(fmt::format(
       "much of these bands is a voxel thick, and their surfaces alone would make about {:.2g} million elements, where "
-      "the automatic size has a budget of {:.2g} million: they are taken from means of voxels, {:.3g} apart, and so "
+      "{} {:.2g} million: they are taken from means of voxels, {:.3g} apart, and so "
       "lose what is thinner. That changes {}. For all voxels give e.g. `resample` {:.6g},{:.6g},{:.6g}; `islands` and "
       "`holes` remove noise",
-      elements / 1e6, asked.most_elements / 1e6, spacing, most_changed(bands, coarse), own.x, own.y, own.z));
+      elements / 1e6, has_size ? "the size asks for" : "the automatic size has a budget of",
+      most / (has_size ? kTimesAsked : 1) / 1e6, spacing, most_changed(bands, coarse), own.x, own.y, own.z));
   return made;
 }
 

@@ -139,19 +139,18 @@ std::optional<Image> with_whole_labels(const Image& image) {
 }
 
 /// `repeats`: what is changed at one face of a cell would have to change at the opposite one.
-double area_of_contacts(const Image& image, const ImageRegions& regions, const IntakeOptions& options, bool repeats) {
+double area_of_contacts(const IntakeOptions& options, bool repeats) {
   const std::string asked = contacts_asked(options).of_labels;
   if (asked == "keep" || (repeats && asked.empty())) return 0;
   if (repeats) throw OptionError("`contacts` are not cleared in an image that is repeated: give keep, or leave it out");
   if (!asked.empty()) return *area_in(asked);
-  if (kind_of(image, regions) != ImageRegions::Kind::kLabels) return 0;
   const double size = options.image.size.value_or(0);
   return size * size;
 }
 
 /// `repeats`: as for contacts.
-double volume_of_specks(const Image& image, const ImageRegions& regions, const ImageIntake& asked, bool repeats) {
-  if (repeats || kind_of(image, regions) != ImageRegions::Kind::kLabels) return 0;
+double volume_of_specks(const ImageIntake& asked, bool repeats) {
+  if (repeats) return 0;
   if (asked.specks) return *asked.specks;
   const double size = asked.size.value_or(0);
   return kRegularTet * size * size * size;
@@ -208,8 +207,8 @@ void take_image(Domain& domain, const IntakeOptions& options, const Image& image
   const Image& used = part ? *part : given;
   const std::array<bool, 3> repeated = axes_named("repeat", options.repeat.value_or(""));
   const bool repeats = std::ranges::any_of(repeated, [](bool along) { return along; });
-  if (regions.clean.specks == 0) regions.clean.specks = volume_of_specks(used, regions, options.image, repeats);
-  if (regions.clean.contacts == 0) regions.clean.contacts = area_of_contacts(used, regions, options, repeats);
+  if (regions.clean.specks == 0) regions.clean.specks = volume_of_specks(options.image, repeats);
+  if (regions.clean.contacts == 0) regions.clean.contacts = area_of_contacts(options, repeats);
   domain.format = image.format;
   domain.frame = image.frame;
   domain.voxel_spacing = smallest_spacing(used.grid);

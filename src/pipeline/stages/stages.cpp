@@ -117,6 +117,9 @@ constexpr double kPerStripOfGeometry = 2, kRiseFromStripsOfGeometry = 0.7;
 // Of a size that is given: strips between lines that are narrower are served as they come.
 constexpr double kNarrowOfGiven = 1.0 / 3;
 
+// Between voxels, where elements are coarser: torn sheets a voxel thick (five bands of a skull .72; atlases .17 to .5).
+constexpr double kMostSeamsOfVoxels = 0.6;
+
 // Of true geometry a size that is given follows curvature by so many elements a turn, as is usual with CAD.
 constexpr double kTurnsOfGeometry = 12;
 
@@ -428,7 +431,8 @@ Remeshed triangulate(const Prepared& input, const SizeField& sizes, Run& run) {
                              .rise = size.gradation ? 0
                                      : is_coarse    ? kRiseFromStripsOfGeometry
                                                     : kRiseFromStrips,
-                             .per_strip = is_coarse ? kPerStripOfGeometry : 0};
+                             .per_strip = is_coarse ? kPerStripOfGeometry : 0,
+                             .most_seams = surface.finest > 0 ? kMostSeamsOfVoxels : HUGE_VAL};
     Remeshed remeshed = remeshed_in_shape(
         input, sizes, run, stage,
         [&](const SizeField& by) {

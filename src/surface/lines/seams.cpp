@@ -721,8 +721,12 @@ std::uint64_t divide_repeated_triangles(WorkingMesh& mesh, const KnownSurface& c
 std::vector<VertexIndex> sewn_vertices(const WorkingMesh& mesh) {
   std::vector<VertexIndex> sewn(mesh.points.size());
   for (VertexIndex v = 0; v < sewn.size(); ++v) sewn[v] = v;
-  for (const auto& [place, copies] : copies_on_seams(mesh))
-    for (const VertexIndex v : copies) sewn[v] = copies[0];
+  std::vector<std::pair<Place, VertexIndex>> on_seams;
+  for (VertexIndex v = 0; v < sewn.size(); ++v)
+    if (mesh.outgoing[v] != kNone && mesh.is_sewn(v)) on_seams.emplace_back(place_of(mesh.points[v]), v);
+  std::ranges::sort(on_seams);
+  for (std::size_t i = 1; i < on_seams.size(); ++i)
+    if (on_seams[i].first == on_seams[i - 1].first) sewn[on_seams[i].second] = sewn[on_seams[i - 1].second];
   return sewn;
 }
 

@@ -39,6 +39,8 @@ struct FrontLimits {
   double rise = 0;
   /// Sizes in strips are no smaller than so many widths of them.
   double per_strip = 0;
+  /// A complex with more sides of triangles on seams than this, for each triangle, is noise: it is kept as it is.
+  double most_seams = HUGE_VAL;
 };
 
 /// The surface front. Requires a clean surface (see surface_mesh.h). The result is checked: closed, manifold, same

@@ -83,7 +83,8 @@ class SeamedFront : public FrontKind {
 
   /// What most triangles would be made smaller for in further rounds.
   void foresee(RoundSizes& sizes) override {
-    if (!work_.limits_deviation()) return;
+    is_noise_ = seams_per_triangle() > work_.limits.most_seams;
+    if (is_noise_ || !work_.limits_deviation()) return;
     set_features(input(), {});
     set_features(input(), features_at_scale(input(), features(), sizes.now()));
     std::vector<std::uint8_t> is_fixed(input().mesh.points.size(), 0);
@@ -171,6 +172,13 @@ class SeamedFront : public FrontKind {
   std::vector<PointSize> not_below_least(std::vector<PointSize> wanted) const {
     for (PointSize& w : wanted) w.size = std::max(w.size, least_.at(w.p));
     return wanted;
+  }
+
+  double seams_per_triangle() const {
+    std::size_t seams = 0;
+    const auto sides = static_cast<HalfEdge>(3 * work_.surface().triangles.size());
+    for (HalfEdge h = 0; h < sides; ++h) seams += seamed_.input.is_seam(h);
+    return 3 * static_cast<double>(seams) / static_cast<double>(sides);
   }
 
   /// What smaller sizes make of the elements, by the prediction.

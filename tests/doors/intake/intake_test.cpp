@@ -177,6 +177,33 @@ TEST_F(Intake, BandsOfNoiseThatNoBudgetHoldsComeFromCoarserVoxels) {
   EXPECT_EQ(open_domain(grey_cube(24, true), options).voxels[0], 24u) << "asked for";
 }
 
+TEST_F(Intake, BandsOfNoiseComeFromVoxelsNoLargerThanTheSizeThatIsGiven) {
+  IntakeOptions options;
+  options.image.regions.bands = {{0, 40, "low"}, {40, HUGE_VAL, "high"}};
+  options.image.size = 3;
+  const Domain domain = open_domain(grey_cube(24, true), options);
+  EXPECT_LT(domain.voxels[0], 24u);
+  EXPECT_GE(domain.voxels[0], 8u);
+  EXPECT_TRUE(says(domain, "resampling", "the size asks for"));
+  EXPECT_EQ(open_domain(grey_cube(24, false), options).voxels[0], 24u) << "not thin";
+  options.image.size = 0.9;
+  EXPECT_EQ(open_domain(grey_cube(24, true), options).voxels[0], 24u) << "smaller than voxels";
+}
+
+TEST_F(Intake, SpecksOfBandsGoWhereASizeIsGiven) {
+  Image image = grey_cube(24, false);  // a ramp
+  auto& values = std::get<std::vector<float>>(image.values);
+  const std::size_t in_low = 6 + 24 * (12 + 24 * 12);
+  values[in_low] = 90;
+  IntakeOptions options;
+  options.image.regions.bands = {{-HUGE_VAL, 60, "low"}, {60, HUGE_VAL, "high"}};
+  EXPECT_FALSE(says(open_domain(image, options), "regions", "specks"));
+  options.image.size = 4;
+  EXPECT_TRUE(says(open_domain(image, options), "regions", "\"high\" 1 (1 voxel)"));
+  options.image.specks = 0;
+  EXPECT_FALSE(says(open_domain(image, options), "regions", "specks"));
+}
+
 TEST_F(Intake, ANetOfNoiseIsKeptBeforeAnyRoundWhereTheBudgetIsSpent) {
   Options options;
   options.size.automatic_factor = 4;
