@@ -3,7 +3,9 @@
 #include <octafront/vec.h>
 
 #include "base/core/parallel.h"
+#include "base/geometry/box_tree.h"
 #include "base/geometry/measures.h"
+#include "base/geometry/triangle_box.h"
 #include "base/mesh/face_table.h"
 
 #include <algorithm>
@@ -23,7 +25,6 @@ constexpr double kRoundingOfWeights = 1e-9;
 constexpr double kFarthestOut = 1;
 /// Tets that share less than this part of themselves with old ones share nothing.
 constexpr double kLeastShared = 1e-9;
-constexpr std::uint32_t kTetsOfLeaf = 4;
 
 Corners corners_in(const TetMesh& mesh, TetIndex t) {
   const auto& [a, b, c, d] = mesh.tets[t];
@@ -109,53 +110,16 @@ class Clipper {
   std::vector<Corners> parts_, kept_;
 };
 
-double squared_way(const Box3& box, Vec3 p) {
-  double sum = 0;
-  for (int i = 0; i < 3; ++i) {
-    const double way = std::max({box.lo[i] - p[i], p[i] - box.hi[i], 0.0});
-    sum += way * way;
-  }
-  return sum;
-}
-
 }  // namespace
 
-/// Boxes of tets, halved and halved again.
+/// Tets by their boxes.
 struct Carrier::Tree {
-  struct Node {
-    Box3 box;
-    std::uint32_t first = 0, count = 0;  ///< leaf: its items; count 0: its left child, then the right one
-  };
-  struct Item {
-    Box3 box;
-    TetIndex tet;
-  };
-
-  Tree(const TetMesh& mesh, const std::vector<TetIndex>& tets) : mesh_(mesh) {
-    for (const TetIndex t : tets) {
-      Box3 box;
-      for (const Vec3& p : corners_in(mesh, t)) box.add(p);
-      items_.push_back({box, t});
-    }
-    nodes_.emplace_back();
-    if (!items_.empty()) divide(0, 0, static_cast<std::uint32_t>(items_.size()));
-  }
+  Tree(const TetMesh& mesh, const std::vector<TetIndex>& tets) : mesh_(mesh), boxes_(items_of(mesh, tets)) {}
 
   /// visit(tet) for all whose boxes meet the box, in an order that depends on the tree only.
   template <class Visit>
   void for_each_near(const Box3& box, const Visit& visit) const {
-    std::array<std::uint32_t, 64> stack{};
-    int depth = items_.empty() ? 0 : 1;
-    while (depth > 0) {
-      const Node& node = nodes_[stack[static_cast<std::size_t>(--depth)]];
-      if (!node.box.overlaps(box)) continue;
-      if (node.count == 0) {
-        stack[static_cast<std::size_t>(depth++)] = node.first + 1;
-        stack[static_cast<std::size_t>(depth++)] = node.first;
-      }
-      for (std::uint32_t i = node.first; i < node.first + node.count; ++i)
-        if (items_[i].box.overlaps(box)) visit(items_[i].tet);
-    }
+    boxes_.for_each([&](const Box3& b) { return b.overlaps(box); }, [&](const auto& item) { visit(item.number); });
   }
 
   /// The tet nearest to p, of those wanted; kNone: there is none.
@@ -163,47 +127,30 @@ struct Carrier::Tree {
   TetIndex nearest(Vec3 p, const Wanted& wanted) const {
     TetIndex best = kNone;
     double distance = HUGE_VAL;
-    std::array<std::uint32_t, 64> stack{};
-    int depth = items_.empty() ? 0 : 1;
-    while (depth > 0) {
-      const Node& node = nodes_[stack[static_cast<std::size_t>(--depth)]];
-      if (squared_way(node.box, p) >= distance) continue;
-      if (node.count == 0) {
-        const bool left_first = squared_way(nodes_[node.first].box, p) <= squared_way(nodes_[node.first + 1].box, p);
-        stack[static_cast<std::size_t>(depth++)] = left_first ? node.first + 1 : node.first;
-        stack[static_cast<std::size_t>(depth++)] = left_first ? node.first : node.first + 1;
-      }
-      for (std::uint32_t i = node.first; i < node.first + node.count; ++i) {
-        if (squared_way(items_[i].box, p) >= distance || !wanted(items_[i].tet)) continue;
-        const double d = squared_distance(p, nearest_on(corners_in(mesh_, items_[i].tet), p));
-        if (d < distance) distance = d, best = items_[i].tet;
-      }
-    }
+    boxes_.for_each(
+        [&](const Box3& box) { return squared_distance(p, box) < distance; },
+        [&](const auto& item) {
+          if (!wanted(item.number)) return;
+          const double d = squared_distance(p, nearest_on(corners_in(mesh_, item.number), p));
+          if (d < distance) distance = d, best = item.number;
+        },
+        [&](const Box3& left, const Box3& right) { return squared_distance(p, left) <= squared_distance(p, right); });
     return best;
   }
 
  private:
-  void divide(std::uint32_t node, std::uint32_t begin, std::uint32_t end) {
-    Node made{{}, begin, end - begin};
-    for (std::uint32_t i = begin; i < end; ++i) made.box.add(items_[i].box);
-    if (end - begin > kTetsOfLeaf) {
-      const Vec3 extent = made.box.extent();
-      const int axis = extent.x >= extent.y && extent.x >= extent.z ? 0 : extent.y >= extent.z ? 1 : 2;
-      const std::uint32_t middle = begin + (end - begin) / 2;
-      const auto key = [axis](const Item& item) { return std::pair(item.box.center()[axis], item.tet); };
-      std::nth_element(items_.begin() + begin, items_.begin() + middle, items_.begin() + end,
-                       [&](const Item& a, const Item& b) { return key(a) < key(b); });
-      made.first = static_cast<std::uint32_t>(nodes_.size()), made.count = 0;
-      nodes_.resize(nodes_.size() + 2);
-      divide(made.first, begin, middle);
-      divide(made.first + 1, middle, end);
+  using Boxes = BoxTree<Box3>;
+  static std::vector<Boxes::Item> items_of(const TetMesh& mesh, const std::vector<TetIndex>& tets) {
+    std::vector<Boxes::Item> items;
+    for (const TetIndex t : tets) {
+      items.push_back({{}, t});
+      for (const Vec3& p : corners_in(mesh, t)) items.back().bounds.add(p);
     }
-    nodes_[node] = made;
+    return items;
   }
 
   const TetMesh& mesh_;
-  std::vector<Item> items_;
-  std::vector<Node> nodes_;
+  Boxes boxes_;
 };
 
 Carrier::Carrier(const TetMesh& before, const TetMesh& now, std::span<const VertexIndex> old_of_new,

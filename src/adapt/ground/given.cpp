@@ -1,6 +1,7 @@
 #include "adapt/ground/given.h"
 
-#include "adapt/ground/nearest.h"
+#include "base/geometry/nearest_that.h"
+#include "base/mesh/surface_topology.h"
 
 #include <algorithm>
 #include <cmath>
@@ -14,12 +15,6 @@ constexpr double kLeastAgreement = 0.5;
 /// The true geometry is no farther from its triangles than this part of their longest edge; else it is another sheet.
 constexpr double kFarthestOfTruth = 0.5;
 
-std::vector<Triangle> triangles_on(const std::vector<Edge>& edges) {
-  std::vector<Triangle> all;
-  for (const auto& [a, b] : edges) all.push_back({a, b, b});
-  return all;
-}
-
 }  // namespace
 
 GivenSurface::GivenSurface(SurfaceMesh surface, const TrueGeometry* geometry, double feature_angle, double reach)
@@ -31,7 +26,7 @@ GivenSurface::GivenSurface(SurfaceMesh surface, const TrueGeometry* geometry, do
       corner_tree_(SurfaceMesh{}) {
   const EdgeTable edges = make_edge_table(surface_.points.size(), surface_.triangles);
   lines_ = detect_features(surface_, edges, feature_angle);
-  line_tree_ = TriangleTree(surface_.points, triangles_on(lines_.edges));
+  line_tree_ = tree_of_segments(surface_.points, lines_.edges);
   corner_tree_ = tree_of_points(surface_.points, lines_.corners);
   if (geometry_) {
     std::size_t e = 0;
@@ -58,11 +53,7 @@ void GivenSurface::find_outside() {
   }
   // Which side is outside is known of what is closed and turned one way.
   const EdgeTable edges = make_edge_table(surface_.points.size(), surface_.triangles);
-  for (std::size_t e = 0; e < edges.size(); ++e) {
-    const auto uses = edges.uses(e);
-    if (uses.size() != 2) return;
-    if (start_of(surface_.triangles, uses[0]) == start_of(surface_.triangles, uses[1])) return;
-  }
+  if (!is_turned_one_way(surface_.triangles, edges, true)) return;
   double volume = 0;
   const Vec3 from = surface_.points.empty() ? Vec3{} : surface_.points[0];
   for (const auto& [a, b, c] : surface_.triangles)

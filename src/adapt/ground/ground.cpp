@@ -1,9 +1,9 @@
 #include "adapt/ground/ground.h"
 
-#include "adapt/ground/nearest.h"
 #include "base/core/disjoint_sets.h"
 #include "base/core/groups.h"
 #include "base/core/parallel.h"
+#include "base/geometry/nearest_that.h"
 #include "base/mesh/adjacency.h"
 
 #include <algorithm>

@@ -108,9 +108,7 @@ double expected_triangles(const SurfaceMesh& surface, const MetricField& metric)
       // The area of this very triangle in the metric of a place.
       const auto area = [&](Vec3 at) {
         std::uint32_t hint = 0;
-        const Metric m = metric.at(at, hint);
-        const double uw = dot(u, m.times(w));
-        return 0.5 * std::sqrt(std::max(m.squared(u) * m.squared(w) - uw * uw, 0.0));
+        return metric_area(metric.at(at, hint), u, w);
       };
       const ElementsIn<3, decltype(area)> elements(area, least_depth_for(surface.triangles.size()));
       sum += elements.of({{{p[a], area(p[a])}, {p[b], area(p[b])}, {p[c], area(p[c])}}}, kTrianglesPerArea);

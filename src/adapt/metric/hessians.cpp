@@ -88,24 +88,11 @@ class Patch {
   std::vector<VertexIndex> vertices_;
 };
 
-/// The symmetric square root of a metric: in its coordinates the elements around are regular.
-Metric root_of(const Metric& m) {
-  adapt::Eigen e = adapt::eigen(m);
-  for (double& value : e.value) value = std::sqrt(value);
-  return e.tensor();
-}
-
-/// r h r, for symmetric r and h.
-Metric turned_back(const Metric& r, const Metric& h) {
-  const std::array<Vec3, 3> columns{{{r.xx, r.xy, r.xz}, {r.xy, r.yy, r.yz}, {r.xz, r.yz, r.zz}}};
-  const auto entry = [&](std::size_t i, std::size_t j) { return dot(columns[i], h.times(columns[j])); };
-  return {entry(0, 0), entry(0, 1), entry(0, 2), entry(1, 1), entry(1, 2), entry(2, 2)};
-}
-
 Metric hessian_at(const TetMesh& mesh, std::span<const double> values, std::span<const VertexIndex> patch,
                   const Metric& implied) {
   const VertexIndex v = patch.front();
-  const Metric root = root_of(implied);
+  // In whose coordinates the elements around are regular.
+  const Metric root = adapt::root_of(implied);
   NormalEquations equations;
   for (const VertexIndex w : patch.subspan(1)) {
     const Vec3 d = root.times(mesh.points[w] - mesh.points[v]);
@@ -113,7 +100,7 @@ Metric hessian_at(const TetMesh& mesh, std::span<const double> values, std::span
     equations.add(row, values[w] - values[v], 1 / std::max(squared_length(d), 1e-12));
   }
   const Row x = equations.solved();
-  return turned_back(root, {x[3], x[4], x[5], x[6], x[7], x[8]});
+  return adapt::between(root, {x[3], x[4], x[5], x[6], x[7], x[8]});
 }
 
 }  // namespace

@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <utility>
 
 namespace octafront::adapt {
 namespace {
@@ -40,14 +41,30 @@ Metric with_values(const Metric& m, const Function& function) {
   return e.tensor();
 }
 
-/// s t s, for symmetric s and t.
-Metric between(const Metric& s, const Metric& t) {
-  const std::array<Vec3, 3> columns{{{s.xx, s.xy, s.xz}, {s.xy, s.yy, s.yz}, {s.xz, s.yz, s.zz}}};
-  const auto entry = [&](int i, int j) { return dot(columns[i], t.times(columns[j])); };
-  return {entry(0, 0), entry(0, 1), entry(0, 2), entry(1, 1), entry(1, 2), entry(2, 2)};
+/// `to` with limits on its values in the coordinates in which `from` is 1; itself if they change nothing.
+template <class Limited>
+Metric limited(const Metric& from, const Metric& to, bool& same, const Limited& limited) {
+  const Metric root = root_of(from);
+  Eigen change = eigen(between(inverse(root), to));
+  same = true;
+  for (double& value : change.value) {
+    const double had = std::exchange(value, limited(value));
+    same &= value == had;
+  }
+  return same ? to : between(root, change.tensor());
 }
 
 }  // namespace
+
+Metric root_of(const Metric& m) {
+  return with_values(m, [](double x) { return std::sqrt(std::max(x, 1e-300)); });
+}
+
+Metric between(const Metric& s, const Metric& t) {
+  const std::array<Vec3, 3> columns{{{s.xx, s.xy, s.xz}, {s.xy, s.yy, s.yz}, {s.xz, s.yz, s.zz}}};
+  const auto entry = [&](std::size_t i, std::size_t j) { return dot(columns[i], t.times(columns[j])); };
+  return {entry(0, 0), entry(0, 1), entry(0, 2), entry(1, 1), entry(1, 2), entry(2, 2)};
+}
 
 Metric inverse(const Metric& m) {
   const double d = 1 / m.determinant();
@@ -86,7 +103,7 @@ Metric exp_of(const Metric& log) {
 }
 
 Metric intersection(const Metric& a, const Metric& b) {
-  const Metric root = with_values(a, [](double x) { return std::sqrt(std::max(x, 1e-300)); });
+  const Metric root = root_of(a);
   Eigen change = eigen(between(inverse(root), b));
   bool is_within = true, is_finer = true;
   for (double& value : change.value) {
@@ -124,29 +141,15 @@ Metric implied_metric(Vec3 a, Vec3 b, Vec3 c, Vec3 d) {
 }
 
 Metric step_towards(const Metric& from, const Metric& to, double ratio, bool& arrived) {
-  const Metric root = with_values(from, [](double x) { return std::sqrt(std::max(x, 1e-300)); });
-  Eigen change = eigen(between(inverse(root), to));
-  const double most = ratio * ratio;
-  arrived = true;
-  for (double& value : change.value) {
-    const double within = std::min(value, most);
-    arrived &= within == value;
-    value = within;
-  }
-  return arrived ? to : between(root, change.tensor());
+  return limited(from, to, arrived, [most = ratio * ratio](double value) { return std::min(value, most); });
 }
 
 Metric within(const Metric& from, const Metric& to, double least, double most) {
-  const Metric root = with_values(from, [](double x) { return std::sqrt(std::max(x, 1e-300)); });
-  Eigen change = eigen(between(inverse(root), to));
   bool same = true;
-  for (double& value : change.value) {
-    // Squared lengths of `from` over those of `to`.
-    const double limited = std::clamp(value, 1 / (most * most), least > 0 ? 1 / (least * least) : HUGE_VAL);
-    same &= limited == value;
-    value = limited;
-  }
-  return same ? to : between(root, change.tensor());
+  // Squared lengths of `from` over those of `to`.
+  return limited(from, to, same, [=](double value) {
+    return std::clamp(value, 1 / (most * most), least > 0 ? 1 / (least * least) : HUGE_VAL);
+  });
 }
 
 double density_of(const Metric& m) {

@@ -10,6 +10,7 @@
 #include <octafront/size_field.h>
 #include <octafront/vec.h>
 
+#include <algorithm>
 #include <array>
 #include <cmath>
 #include <cstdint>
@@ -30,6 +31,11 @@ struct Eigen {
   Metric tensor() const;
 };
 Eigen eigen(const Metric& m);
+
+/// The symmetric square root: in its coordinates what fits the metric is regular.
+Metric root_of(const Metric& m);
+/// s t s, for symmetric s and t.
+Metric between(const Metric& s, const Metric& t);
 
 /// The matrix logarithm of a metric, and back: means of metrics are means of their logarithms (V. Arsigny, P. Fillard,
 /// X. Pennec, N. Ayache, "Log-Euclidean metrics for fast and simple calculus on diffusion tensors", 2006).
@@ -60,6 +66,12 @@ inline double log_mean(double a, double b) {
 /// Working Group: 1 is what is wanted.
 inline double metric_length(Vec3 e, const Metric& a, const Metric& b) {
   return log_mean(std::sqrt(a.squared(e)), std::sqrt(b.squared(e)));
+}
+
+/// The area of the triangle between two edges in a metric.
+inline double metric_area(const Metric& m, Vec3 u, Vec3 w) {
+  const double uw = dot(u, m.times(w));
+  return 0.5 * std::sqrt(std::max(m.squared(u) * m.squared(w) - uw * uw, 0.0));
 }
 
 /// Edges within these lengths fit the metric; longer ones are split, shorter ones collapsed.

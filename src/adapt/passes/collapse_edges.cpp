@@ -20,12 +20,6 @@ constexpr float kPoorForCollapse = 0.3f, kPoorForCollapseInMetric = 0.55f, kGain
 constexpr int kMostRounds = 3;
 constexpr int kCheckCollapseEvery = 256;
 
-template <class T>
-void make_set(std::vector<T>& items) {
-  std::sort(items.begin(), items.end());
-  items.erase(std::unique(items.begin(), items.end()), items.end());
-}
-
 class EdgeCollapser {
  public:
   EdgeCollapser(Piece& piece, const Guide& guide, bool mends) : piece_(piece), guide_(guide), mends_(mends) {}
@@ -96,7 +90,7 @@ class EdgeCollapser {
       if (mends_ && !goes) continue;
       for (const auto& [i, j] : kTetEdges) {
         const Vertex &p = piece_.vertices[c[i]], &q = piece_.vertices[c[j]];
-        if (!(waits(c[i]) || waits(c[j])) || (!may_go(p) && !may_go(q))) continue;
+        if (!(waits(c[i]) || waits(c[j])) || (p.stays() && q.stays())) continue;
         // Around others there is one that is poorer, and asks by itself.
         const float score = piece_.score[t];
         const bool helps = goes && (mends_ || worst_at_[c[i]] == score || worst_at_[c[j]] == score);
@@ -115,13 +109,11 @@ class EdgeCollapser {
     return found;
   }
 
-  static bool may_go(const Vertex& v) { return !v.rim && !v.frozen && !v.held && v.kind != Kind::kFixed; }
-
   bool collapse(TetIndex t, VertexIndex a, VertexIndex b) {
     if (!piece_.ring(t, a, b, ring_)) return false;
     one_.clear(), other_.clear();
-    if (may_go(piece_.vertices[a])) plan(a, b, one_);
-    if (may_go(piece_.vertices[b])) plan(b, a, other_);
+    if (!piece_.vertices[a].stays()) plan(a, b, one_);
+    if (!piece_.vertices[b].stays()) plan(b, a, other_);
     const bool first = !(other_.worst > one_.worst);
     for (Plan* plan : {first ? &one_ : &other_, first ? &other_ : &one_}) {
       if (!(plan->worst > 0) || !keeps_surface(*plan)) continue;
@@ -132,7 +124,7 @@ class EdgeCollapser {
   }
 
   /// Whether the vertex may go to the other end as far as walls and lines are concerned.
-  bool kinds_allow(VertexIndex u, VertexIndex w) const {
+  bool kinds_allow(VertexIndex u, VertexIndex w) {
     const Vertex &from = piece_.vertices[u], &to = piece_.vertices[w];
     switch (from.kind) {
       case Kind::kInner:
@@ -142,21 +134,12 @@ class EdgeCollapser {
         return path && *path != Parts::kStays && !to.rim;
       }
       case Kind::kSurface:
-        return to.kind != Kind::kInner && !to.rim && ring_walls() == 2;
+        if (to.kind == Kind::kInner || to.rim) return false;
+        piece_.walls_of(ring_, walls_at_);
+        return walls_at_.size() == 2;
       default:
         return false;
     }
-  }
-  /// How many walls the edge of the ring lies on.
-  int ring_walls() const {
-    int walls = 0;
-    for (std::size_t k = 0; k < ring_.tets.size(); ++k) {
-      const VertexIndex to = ring_.ring[(k + 1) % ring_.ring.size()];
-      walls += piece_.wall[piece_.complex.opposite(ring_.tets[k], to)] != 0;
-      if (!ring_.closed && k + 1 == ring_.tets.size())
-        walls += piece_.wall[piece_.complex.opposite(ring_.tets[k], ring_.ring[k])] != 0;
-    }
-    return walls;
   }
 
   void plan(VertexIndex u, VertexIndex w, Plan& out) {
@@ -212,40 +195,21 @@ class EdgeCollapser {
   /// merge.
   bool plan_walls(Plan& out) {
     const VertexIndex u = out.gone, w = out.onto;
-    std::vector<Wall> labels;
-    struct Change {
-      TriangleCorners corners;
-      Wall wall;
-      bool stays;
-    };
-    std::vector<Change> before, after;
-    for (const TetIndex t : out.old)
-      for (HalfFace h = 4 * t; h < 4 * t + 4; ++h) {
-        if (piece_.wall[h] == 0 || piece_.complex.apex(h) == u) continue;
-        if (!is_outside(piece_.complex.across[h]) && piece_.complex.across[h] < h) continue;
-        Triangle f = piece_.complex.face(h);
-        const bool vanishes = f[0] == w || f[1] == w || f[2] == w;
-        before.push_back({corners_of(f), piece_.wall[h], !vanishes});
-        if (vanishes) {
-          for (const VertexIndex x : f)
-            if (x != u && x != w && piece_.line(u, x) && piece_.line(w, x)) return false;
-          continue;
-        }
-        std::replace(f.begin(), f.end(), u, w);
-        after.push_back({corners_of(f), piece_.wall[h], true});
-        out.walls.push_back({f, piece_.wall[h]});
+    std::vector<WallTriangle> before, after;
+    bool merges_lines = false;
+    piece_.for_each_wall(u, out.old, [&](HalfFace h) {
+      Triangle f = piece_.complex.face(h);
+      before.push_back({corners_of(f), piece_.wall[h]});
+      if (f[0] == w || f[1] == w || f[2] == w) {
+        for (const VertexIndex x : f)
+          merges_lines = merges_lines || (x != u && x != w && piece_.line(u, x) && piece_.line(w, x));
+        return;
       }
-    for (const Change& c : before) labels.push_back(c.wall);
-    make_set(labels);
-    for (const Wall label : labels) {
-      std::vector<TriangleCorners> had, has;
-      for (const Change& c : before)
-        if (c.wall == label) had.push_back(c.corners);
-      for (const Change& c : after)
-        if (c.wall == label) has.push_back(c.corners);
-      if (has.empty() || !keeps_walls_true(guide_, had, has, label)) return false;
-    }
-    return true;
+      std::replace(f.begin(), f.end(), u, w);
+      after.push_back({corners_of(f), piece_.wall[h]});
+      out.walls.push_back({f, piece_.wall[h]});
+    });
+    return !merges_lines && keep_walls_true(guide_, before, after);
   }
 
   TriangleCorners corners_of(const Triangle& f) const {
@@ -267,26 +231,22 @@ class EdgeCollapser {
 
   void apply(const Plan& p) {
     const VertexIndex u = p.gone, w = p.onto;
-    if (piece_.vertices[u].kind == Kind::kCurve) move_line(u, w, p.old);
+    if (piece_.vertices[u].kind == Kind::kCurve) {
+      std::vector<VertexIndex> beside;
+      for (const TetIndex t : p.old)
+        for (const VertexIndex v : piece_.tet(t))
+          if (v != u && piece_.line(u, v)) beside.push_back(v);
+      piece_.line_edges.shorten(u, w, beside);
+    }
     piece_.replace(p.old, p.fresh, p.walls);
     piece_.complex.tet_at[u] = kNone;
-  }
-
-  /// The line that led through u to w leads to w.
-  void move_line(VertexIndex u, VertexIndex w, const std::vector<TetIndex>& star) {
-    const std::uint32_t path = *piece_.line(u, w);
-    for (const TetIndex t : star)
-      for (const VertexIndex v : piece_.tet(t)) {
-        if (v == u || !piece_.line(u, v)) continue;
-        piece_.drop_line(u, v);
-        if (v != w) piece_.set_line(v, w, path);
-      }
   }
 
   Piece& piece_;
   const Guide& guide_;
   bool mends_;
   EdgeRing ring_;
+  std::vector<Piece::WallAt> walls_at_;
   Plan one_, other_;
   std::vector<HalfFace> star_;
   std::vector<float> worst_at_;  ///< per vertex: the least score of its elements

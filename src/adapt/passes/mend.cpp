@@ -120,8 +120,8 @@ class Inserter {
       const Tet& c = piece_.tet(t);
       for (const VertexIndex v : c) {
         const Vertex& vertex = piece_.vertices[v];
-        const bool stays = vertex.kind != Kind::kInner || vertex.rim || vertex.frozen || vertex.held;
-        if (stays && !std::binary_search(rim_.begin(), rim_.end(), v)) return false;
+        if ((vertex.kind != Kind::kInner || vertex.stays()) && !std::binary_search(rim_.begin(), rim_.end(), v))
+          return false;
       }
       for (const auto& [i, j] : kTetEdges) {
         const bool stays = piece_.line(c[i], c[j]) || (piece_.vertices[c[i]].frozen && piece_.vertices[c[j]].frozen);

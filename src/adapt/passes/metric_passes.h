@@ -8,6 +8,7 @@
 
 #include "adapt/ground/ground.h"
 #include "adapt/passes/piece.h"
+#include "base/core/stage.h"
 
 #include <cstddef>
 #include <cstdint>
@@ -41,6 +42,25 @@ struct PassCount {
   PassCount& operator+=(const PassCount& o) {
     tried += o.tried, done += o.done, unfinished |= o.unfinished;
     return *this;
+  }
+};
+
+/// What all passes did.
+struct Counts {
+  PassCount split, collapse, swap, move, mend;
+  bool grown = false;  ///< what is left to do waits for other pieces
+
+  Counts& operator+=(const Counts& o) {
+    split += o.split, collapse += o.collapse, swap += o.swap, move += o.move, mend += o.mend;
+    grown |= o.grown;
+    return *this;
+  }
+  std::uint64_t changes() const { return split.done + collapse.done + swap.done + move.done + mend.done; }
+  void tell(const Stage& stage) const {
+    stage.count("splits", static_cast<double>(split.done));
+    stage.count("collapses", static_cast<double>(collapse.done));
+    stage.count("swaps", static_cast<double>(swap.done));
+    stage.count("moves", static_cast<double>(move.done));
   }
 };
 
@@ -78,5 +98,11 @@ PassCount settle_on_ground(Piece& piece, const Guide& guide);
 /// What a pass over walls has to ask: whether triangles may take the place of others of the same part.
 bool keeps_walls_true(const Guide& guide, std::span<const TriangleCorners> before,
                       std::span<const TriangleCorners> after, Wall wall);
+struct WallTriangle {
+  TriangleCorners corners;
+  Wall wall;
+};
+/// The same of several walls, none of which may vanish.
+bool keep_walls_true(const Guide& guide, std::span<const WallTriangle> before, std::span<const WallTriangle> after);
 
 }  // namespace octafront::adapt

@@ -14,10 +14,19 @@ constexpr float kLittleChange = 0.04f;
 
 }  // namespace
 
+Vertex between(const Vertex& a, const Vertex& b, double part) {
+  Vertex made;
+  made.hint = a.hint;
+  made.exact = a.exact && b.exact;
+  if (made.exact) return made;
+  made.metric = exp_of((1 - part) * log_of(a.metric) + part * log_of(b.metric));
+  made.density = density_of(made.metric);
+  return made;
+}
+
 Piece::Piece(const Parts& mesh, std::span<const TetIndex> tets, std::span<const Parts::Line> lines,
-             std::vector<VertexIndex>& here)
-    : isotropic(mesh.isotropic), poor(mesh.poor), lines_(lines.size()) {
-  std::vector<VertexIndex> taken;
+             std::vector<VertexIndex>& here, std::vector<VertexIndex>& number)
+    : isotropic(mesh.isotropic), poor(mesh.poor), line_edges(lines.size()) {
   complex.tets.reserve(tets.size() + tets.size() / 2);
   region.reserve(tets.size());
   wall.reserve(4 * tets.size());
@@ -28,7 +37,7 @@ Piece::Piece(const Parts& mesh, std::span<const TetIndex> tets, std::span<const 
         here[v] = static_cast<VertexIndex>(vertices.size());
         vertices.push_back(mesh.vertices[v]);
         vertices.back().touched = vertices.back().active;
-        taken.push_back(v);
+        number.push_back(v);
       }
       v = here[v];
     }
@@ -37,8 +46,8 @@ Piece::Piece(const Parts& mesh, std::span<const TetIndex> tets, std::span<const 
     wall.insert(wall.end(), mesh.wall[t].begin(), mesh.wall[t].end());
   }
   for (const Parts::Line& l : lines)
-    if (here[l.edge[0]] != kNone && here[l.edge[1]] != kNone) set_line(here[l.edge[0]], here[l.edge[1]], l.path);
-  for (const VertexIndex v : taken) here[v] = kNone;
+    if (here[l.edge[0]] != kNone && here[l.edge[1]] != kNone) line_edges.set(here[l.edge[0]], here[l.edge[1]], l.path);
+  for (const VertexIndex v : number) here[v] = kNone;
   connect();
 }
 
@@ -55,24 +64,23 @@ void Piece::connect() {
 }
 
 bool Piece::ring(TetIndex t, VertexIndex a, VertexIndex b, EdgeRing& out, float least) const {
-  const int i = complex.corner_of(t, a), j = complex.corner_of(t, b);
-  const auto is_fair = [&](TetIndex next) { return score[next] >= least; };
-  const TetComplex::Turn turn = complex.turn_around(t, i, j, out, is_fair);
-  if (turn != TetComplex::Turn::kOpen) return turn == TetComplex::Turn::kClosed;
-  if (complex.across[complex.opposite(out.tets.back(), out.ring[out.ring.size() - 2])] != kOutside) return false;
-  // What lies on the other side of t goes before it.
-  TetIndex at = t;
-  VertexIndex from = out.ring[0], to = out.ring[1];
-  for (;;) {
-    const HalfFace o = complex.across[complex.opposite(at, to)];
-    if (is_outside(o)) return o == kOutside;
-    at = o / 4;
-    if (!is_fair(at)) return false;
-    to = from;
-    from = complex.apex(o);
-    out.tets.insert(out.tets.begin(), at);
-    out.ring.insert(out.ring.begin(), from);
-  }
+  const TetComplex::Turn turn = complex.whole_ring(t, complex.corner_of(t, a), complex.corner_of(t, b), out,
+                                                   [&](TetIndex next) { return score[next] >= least; });
+  const auto ends_outside = [&](TetIndex end, VertexIndex before) {
+    return complex.across[complex.opposite(end, before)] == kOutside;
+  };
+  return turn == TetComplex::Turn::kClosed ||
+         (turn == TetComplex::Turn::kOpen && ends_outside(out.tets.front(), out.ring[1]) &&
+          ends_outside(out.tets.back(), out.ring[out.ring.size() - 2]));
+}
+
+void Piece::walls_of(const EdgeRing& ring, std::vector<WallAt>& out) const {
+  out.clear();
+  const auto add = [&](TetIndex t, VertexIndex opposite, std::size_t place) {
+    if (const Wall w = wall[complex.opposite(t, opposite)]; w != 0) out.push_back({place, ring.ring[place], w});
+  };
+  for (std::size_t k = 0; k < ring.tets.size(); ++k) add(ring.tets[k], ring.ring[(k + 1) % ring.ring.size()], k);
+  if (!ring.closed) add(ring.tets.back(), ring.ring[ring.tets.size() - 1], ring.tets.size());
 }
 
 TetIndex Piece::tet_with(VertexIndex a, VertexIndex b, TetIndex guess) {
@@ -189,7 +197,7 @@ void Piece::move(VertexIndex v, const Vertex& to, std::span<const TetIndex> star
 
 std::vector<Parts::Line> Piece::lines() const {
   std::vector<Parts::Line> all;
-  lines_.for_each([&](const Edge& edge, std::uint32_t path) { all.push_back({edge, path}); });
+  line_edges.for_each([&](const Edge& edge, std::uint32_t path) { all.push_back({edge, path}); });
   std::sort(all.begin(), all.end(), [](const Parts::Line& a, const Parts::Line& b) { return a.edge < b.edge; });
   return all;
 }

@@ -44,6 +44,8 @@ struct alignas(64) Vertex {
   std::uint32_t hint = 0;    ///< where the metric was looked up (MetricField::at)
   double density = 1;        ///< density_of(metric)
   Metric metric;
+
+  bool stays() const { return rim || frozen || held || kind == Kind::kFixed; }
 };
 static_assert(offsetof(Vertex, metric) + sizeof(double) <= 64);
 
@@ -87,6 +89,8 @@ inline SquaredBounds squared_bounds(const Vertex& p, const Vertex& q, bool isotr
                b = isotropic ? q.metric.xx * squared : q.metric.squared(e);
   return {std::min(a, b), std::max(a, b)};
 }
+/// A vertex on the way between two, without a place or a kind: with its metric where it does not get its own.
+Vertex between(const Vertex& a, const Vertex& b, double part);
 /// The score of a tet with these corners, 0 if it is not positive by exact sign.
 inline float score_of_corners(const std::array<const Vertex*, 4>& c, bool isotropic) {
   // Of elements of a better score the sign of the volume is beyond doubt: rounding is 1e-14 of the edges at most.
@@ -121,14 +125,52 @@ struct Parts {
   std::vector<Line> lines;
   bool isotropic = false;  ///< all metrics are those of sizes
   float poor = 0;          ///< elements of a lower score are mended
+
+  /// Adds a tet of another mesh of the same vertices.
+  void add(const Parts& other, TetIndex t) {
+    tets.push_back(other.tets[t]), region.push_back(other.region[t]), wall.push_back(other.wall[t]);
+  }
+};
+
+/// The lines of a mesh that is changed: the path of each edge that lies on one.
+class LineEdges {
+ public:
+  explicit LineEdges(std::size_t expected) : edges_(expected) {}
+
+  const std::uint32_t* find(VertexIndex a, VertexIndex b) const { return edges_.find(sorted_edge(a, b)); }
+  void set(VertexIndex a, VertexIndex b, std::uint32_t path) { edges_.find_or_add(sorted_edge(a, b)) = path; }
+  void drop(VertexIndex a, VertexIndex b) { edges_.erase(sorted_edge(a, b)); }
+  /// The edge ab is divided at v.
+  void divide(VertexIndex a, VertexIndex b, VertexIndex v, std::uint32_t path) {
+    drop(a, b);
+    set(a, v, path), set(v, b, path);
+  }
+  /// The line that led through u to w leads to w; `beside`: vertices, those next to u on the line among them.
+  template <class Vertices>
+  void shorten(VertexIndex u, VertexIndex w, const Vertices& beside) {
+    const std::uint32_t path = *find(u, w);
+    for (const VertexIndex v : beside) {
+      if (!find(u, v)) continue;
+      drop(u, v);
+      if (v != w) set(v, w, path);
+    }
+  }
+  template <class Visit>
+  void for_each(const Visit& visit) const {
+    edges_.for_each(visit);
+  }
+
+ private:
+  FlatMap<Edge, std::uint32_t> edges_;
 };
 
 /// The tets of a Parts that one worker may change, and those vertices, walls and lines that they have.
 class Piece {
  public:
-  /// Takes these tets; `here` has kNone for each vertex of the mesh, and has it again afterwards.
+  /// Takes these tets; `here` has kNone for each vertex of the mesh, and has it again afterwards. `number` becomes that
+  /// in the mesh of each vertex.
   Piece(const Parts& mesh, std::span<const TetIndex> tets, std::span<const Parts::Line> lines,
-        std::vector<VertexIndex>& here);
+        std::vector<VertexIndex>& here, std::vector<VertexIndex>& number);
 
   std::vector<Vertex> vertices;
   TetComplex complex;
@@ -137,16 +179,15 @@ class Piece {
   std::vector<float> score;           ///< per slot: metric_score()
   bool isotropic = false;             ///< Parts::isotropic
   float poor = 0;                     ///< Parts::poor
+  LineEdges line_edges;
 
   const Tet& tet(TetIndex t) const { return complex.tets[t]; }
   Vec3 point(VertexIndex v) const { return vertices[v].at; }
   /// The path of the line that the edge lies on; nullptr: none.
   const std::uint32_t* line(VertexIndex a, VertexIndex b) const {
     if (vertices[a].kind < Kind::kCurve || vertices[b].kind < Kind::kCurve) return nullptr;
-    return lines_.find(sorted_edge(a, b));
+    return line_edges.find(a, b);
   }
-  void set_line(VertexIndex a, VertexIndex b, std::uint32_t path) { lines_.find_or_add(sorted_edge(a, b)) = path; }
-  void drop_line(VertexIndex a, VertexIndex b) { lines_.erase(sorted_edge(a, b)); }
 
   double edge_length(VertexIndex a, VertexIndex b) const { return length_between(vertices[a], vertices[b]); }
   double length_between(const Vertex& p, const Vertex& q) const { return adapt::length_between(p, q, isotropic); }
@@ -170,6 +211,22 @@ class Piece {
   /// The tets around the edge (a, b) of t, from one wall or rim to the other if there are any. False if tets beyond the
   /// rim may be around it too, or one of a score below `least` is.
   bool ring(TetIndex t, VertexIndex a, VertexIndex b, EdgeRing& out, float least = 0) const;
+  /// A wall that the edge of a ring lies on, as the place in the ring that it leads to.
+  struct WallAt {
+    std::size_t place;
+    VertexIndex tip;
+    Wall wall;
+  };
+  void walls_of(const EdgeRing& ring, std::vector<WallAt>& out) const;
+  /// visit(half-face) for the walls at a vertex, whose star is given, each once.
+  template <class Visit>
+  void for_each_wall(VertexIndex v, std::span<const TetIndex> star, const Visit& visit) const {
+    for (const TetIndex t : star)
+      for (HalfFace h = 4 * t; h < 4 * t + 4; ++h) {
+        if (wall[h] == 0 || complex.apex(h) == v) continue;
+        if (is_outside(complex.across[h]) || complex.across[h] > h) visit(h);
+      }
+  }
   /// A tet of the piece that has both; kNone.
   TetIndex tet_with(VertexIndex a, VertexIndex b, TetIndex guess);
 
@@ -191,6 +248,11 @@ class Piece {
   /// Moves a vertex whose star is given, with the scores there. Its neighbours become loose, and active if that is far.
   void move(VertexIndex v, const Vertex& to, std::span<const TetIndex> star, std::span<const float> scores);
 
+  /// Whether something may be left to do around one of the corners.
+  bool is_active(TetIndex t) const {
+    const Tet& c = tet(t);
+    return std::any_of(c.begin(), c.end(), [&](VertexIndex v) { return vertices[v].active; });
+  }
   /// Something around the vertex changed.
   void touch(VertexIndex v) {
     loosen(v);
@@ -236,7 +298,6 @@ class Piece {
   void tie(TetIndex t);
   TetIndex slot();
 
-  FlatMap<Edge, std::uint32_t> lines_;
   OpenFaces rim_;
   std::vector<TetIndex> created_;
 };

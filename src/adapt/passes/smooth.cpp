@@ -104,7 +104,7 @@ class VertexMover {
       at.active &= at.rim;
       if (!at.loose) continue;
       at.loose = at.rim;
-      if (wanted[v] == 0 || at.rim || at.frozen || at.held || at.kind == Kind::kFixed) continue;
+      if (wanted[v] == 0 || at.stays()) continue;
       if (++steps_ % kCheckMoveEvery == 0) guide_.context.check();
       ++count.tried;
       count.done += move(v);
@@ -119,8 +119,7 @@ class VertexMover {
       for (int i = 0; i < 4 && piece_.complex.alive(t) && is_to_mend(piece_, t); ++i) {
         if (++steps_ % kCheckMoveEvery == 0) guide_.context.check();
         const VertexIndex v = piece_.tet(t)[i];
-        const Vertex& at = piece_.vertices[v];
-        if (at.rim || at.frozen || at.held || at.kind == Kind::kFixed) continue;
+        if (piece_.vertices[v].stays()) continue;
         ++count.tried;
         count.done += move_by_trial(v);
       }
@@ -405,15 +404,13 @@ class VertexMover {
   /// The walls at the vertex, and its line; false if it is not where it can move along them.
   bool find_walls(VertexIndex v, std::optional<std::uint32_t>& path) {
     walls_.clear(), line_ends_.clear();
-    for (const TetIndex t : star_) {
-      for (HalfFace h = 4 * t; h < 4 * t + 4; ++h) {
-        if (piece_.wall[h] == 0 || piece_.complex.apex(h) == v) continue;
-        if (!is_outside(piece_.complex.across[h]) && piece_.complex.across[h] < h) continue;
-        Triangle f = piece_.complex.face(h);
-        while (f[0] != v) std::rotate(f.begin(), f.begin() + 1, f.end());
-        walls_.push_back({f, piece_.wall[h]});
-      }
-      if (piece_.vertices[v].kind != Kind::kCurve) continue;
+    piece_.for_each_wall(v, star_, [&](HalfFace h) {
+      Triangle f = piece_.complex.face(h);
+      while (f[0] != v) std::rotate(f.begin(), f.begin() + 1, f.end());
+      walls_.push_back({f, piece_.wall[h]});
+    });
+    if (piece_.vertices[v].kind != Kind::kCurve) return !walls_.empty();
+    for (const TetIndex t : star_)
       for (const VertexIndex u : piece_.tet(t)) {
         const std::uint32_t* line = u == v ? nullptr : piece_.line(u, v);
         if (line && std::find(line_ends_.begin(), line_ends_.end(), u) == line_ends_.end()) {
@@ -422,9 +419,7 @@ class VertexMover {
           path = *line;
         }
       }
-    }
-    if (piece_.vertices[v].kind == Kind::kCurve) return line_ends_.size() == 2;
-    return !walls_.empty();
+    return line_ends_.size() == 2;
   }
 
   Vec3 wall_normal() const {
@@ -477,6 +472,22 @@ class VertexMover {
 bool keeps_walls_true(const Guide& guide, std::span<const TriangleCorners> before,
                       std::span<const TriangleCorners> after, Wall wall) {
   return WallCheck(guide, wall).allows(before, after);
+}
+
+bool keep_walls_true(const Guide& guide, std::span<const WallTriangle> before, std::span<const WallTriangle> after) {
+  std::vector<Wall> walls;
+  for (const WallTriangle& t : before)
+    if (std::find(walls.begin(), walls.end(), t.wall) == walls.end()) walls.push_back(t.wall);
+  const auto of_wall = [](Wall wall, std::span<const WallTriangle> all) {
+    std::vector<TriangleCorners> of;
+    for (const WallTriangle& t : all)
+      if (t.wall == wall) of.push_back(t.corners);
+    return of;
+  };
+  return std::all_of(walls.begin(), walls.end(), [&](Wall wall) {
+    const std::vector<TriangleCorners> has = of_wall(wall, after);
+    return !has.empty() && keeps_walls_true(guide, of_wall(wall, before), has, wall);
+  });
 }
 
 PassCount settle_on_ground(Piece& piece, const Guide& guide) {

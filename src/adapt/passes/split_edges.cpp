@@ -46,7 +46,7 @@ class Splitter {
   PassCount run(std::size_t most_vertices) {
     PassCount count;
     for (TetIndex t = 0; t < piece_.complex.slots(); ++t)
-      if (piece_.complex.alive(t) && is_active(t)) enqueue(t);
+      if (piece_.complex.alive(t) && piece_.is_active(t)) enqueue(t);
     const int least = least_level();
     const std::size_t few = piece_.vertices.size() / kFewSplits;
     for (int level = kLevels - 1; level >= 0; --level) {
@@ -128,12 +128,6 @@ class Splitter {
     if (const auto edge = longest_edge(t)) waiting_[level_of(edge->length)].push_back(t);
   }
 
-  bool is_active(TetIndex t) const {
-    for (const VertexIndex v : piece_.tet(t))
-      if (piece_.vertices[v].active) return true;
-    return false;
-  }
-
   bool may_split(VertexIndex a, VertexIndex b) const {
     const Vertex &p = piece_.vertices[a], &q = piece_.vertices[b];
     if (p.frozen && q.frozen) return false;
@@ -161,24 +155,6 @@ class Splitter {
     return std::clamp(elementary::log((ratio + 1) / 2) / elementary::log(ratio), kLeastPart, 1 - kLeastPart);
   }
 
-  /// The walls that the edge lies on: each as the ring's vertex that it leads to, with its label.
-  struct WallAt {
-    VertexIndex tip;
-    Wall wall;
-  };
-  void find_walls() {
-    walls_.clear();
-    const auto add = [&](TetIndex t, VertexIndex opposite, VertexIndex tip) {
-      const Wall w = piece_.wall[piece_.complex.opposite(t, opposite)];
-      if (w != 0) walls_.push_back({tip, w});
-    };
-    for (std::size_t k = 0; k < ring_.tets.size(); ++k) {
-      const VertexIndex to = ring_.ring[(k + 1) % ring_.ring.size()];
-      add(ring_.tets[k], to, ring_.ring[k]);
-      if (!ring_.closed && k + 1 == ring_.tets.size()) add(ring_.tets[k], ring_.ring[k], to);
-    }
-  }
-
   /// Where the ground wants the new vertex; `straight` if it does not say.
   Vec3 home_of(VertexIndex a, VertexIndex b, Vec3 straight, const std::uint32_t* path) const {
     const double reach = kReachOfSplit * distance(piece_.point(a), piece_.point(b));
@@ -186,7 +162,7 @@ class Splitter {
     if (walls_.empty()) return straight;
     Vec3 normal{};
     const bool outer = (walls_[0].wall & kOuter) != 0;
-    for (const WallAt& w : walls_) {
+    for (const Piece::WallAt& w : walls_) {
       Vec3 n = double_area_normal(piece_.point(a), piece_.point(b), piece_.point(w.tip));
       // Seen along the edge the ring turns from the first wall to the last: outward is behind the first.
       if (outer && w.tip == ring_.ring.front()) n = -n;
@@ -200,18 +176,12 @@ class Splitter {
     const std::uint32_t* path = piece_.line(a, b);
     if (path && *path == Parts::kStays) return false;
     if (!piece_.ring(t, a, b, ring_)) return false;
-    find_walls();
-    if (std::any_of(walls_.begin(), walls_.end(), [&](const WallAt& w) { return guide_.keeps(w.wall); })) return false;
+    piece_.walls_of(ring_, walls_);
+    if (std::any_of(walls_.begin(), walls_.end(), [&](const Piece::WallAt& w) { return guide_.keeps(w.wall); }))
+      return false;
     const Vec3 p = piece_.point(a), q = piece_.point(b), straight = p + part * (q - p);
     const Vec3 home = home_of(a, b, straight, path);
-    Vertex made;
-    const Vertex &from = piece_.vertices[a], &to = piece_.vertices[b];
-    made.hint = from.hint;
-    made.exact = from.exact && to.exact;
-    if (!made.exact) {
-      made.metric = exp_of((1 - part) * log_of(from.metric) + part * log_of(to.metric));
-      made.density = density_of(made.metric);
-    }
+    Vertex made = between(piece_.vertices[a], piece_.vertices[b], part);
     made.kind = path ? Kind::kCurve : walls_.empty() ? Kind::kInner : Kind::kSurface;
     for (const double share : {1.0, 0.5, 0.0}) {
       if (share != 0 && home == straight) continue;
@@ -281,13 +251,9 @@ class Splitter {
     const auto v = static_cast<VertexIndex>(piece_.vertices.size());
     piece_.vertices.push_back(made);
     piece_.complex.tet_at.push_back(kNone);
-    if (path) {
-      const std::uint32_t number = *path;
-      piece_.drop_line(a, b);
-      piece_.set_line(a, v, number), piece_.set_line(v, b, number);
-    }
+    if (path) piece_.line_edges.divide(a, b, v, *path);
     new_walls_.clear();
-    for (const WallAt& w : walls_) {
+    for (const Piece::WallAt& w : walls_) {
       new_walls_.push_back({{a, v, w.tip}, w.wall});
       new_walls_.push_back({{v, b, w.tip}, w.wall});
     }
@@ -302,7 +268,7 @@ class Splitter {
   std::array<std::vector<TetIndex>, kLevels> waiting_;
   FlatSet<Edge> refused_;
   EdgeRing ring_;
-  std::vector<WallAt> walls_;
+  std::vector<Piece::WallAt> walls_;
   std::vector<Piece::NewTet> fresh_;
   std::vector<Piece::NewWall> new_walls_;
   int steps_ = 0;

@@ -1,10 +1,10 @@
-// Other connections between the same vertices: an edge goes, its ring is triangulated anew by dynamic programming, for
-// the least sum of what its elements lack (Klincsek 1980; Shewchuk, "Two discrete optimization algorithms for the
-// topological improvement of tetrahedral meshes", 2002), or a face goes (2-3 flip). An edge inside a wall turns to the
-// other diagonal of its two triangles.
+// Other connections between the same vertices: an edge goes, its ring is triangulated anew (RingFilling) for the least
+// sum of what its elements lack, or a face goes (2-3 flip). An edge inside a wall turns to the other diagonal of its
+// two triangles.
 
 #include "adapt/passes/metric_passes.h"
 #include "adapt/passes/worth.h"
+#include "base/mesh/ring_filling.h"
 
 #include <algorithm>
 #include <array>
@@ -32,7 +32,7 @@ class Swapper {
     PassCount count;
     std::vector<TetIndex> queue;
     for (TetIndex t = 0; t < piece_.complex.slots(); ++t)
-      if (piece_.complex.alive(t) && (mends_ ? is_to_mend(piece_, t) : is_active(t))) queue.push_back(t);
+      if (piece_.complex.alive(t) && (mends_ ? is_to_mend(piece_, t) : piece_.is_active(t))) queue.push_back(t);
     for (std::size_t k = 0; k < queue.size(); ++k) {
       if (++steps_ % kCheckSwapEvery == 0) guide_.context.check();
       const TetIndex t = queue[k];
@@ -52,12 +52,6 @@ class Swapper {
   float value_of(const Tet& c) const { return mends_ ? worth_of(piece_, c) : piece_.score_of(c); }
   double longest_beside(VertexIndex a, VertexIndex b) const {
     return mends_ ? HUGE_VAL : std::max(kLongestOfSwap, piece_.edge_length(a, b));
-  }
-
-  bool is_active(TetIndex t) const {
-    for (const VertexIndex v : piece_.tet(t))
-      if (piece_.vertices[v].active) return true;
-    return false;
   }
 
   bool improve(TetIndex t) {
@@ -94,21 +88,9 @@ class Swapper {
     for (const TetIndex r : ring_.tets) had_ += lack_of(value_of(r));
     if (!(had_ > gain_)) return;
     guard_ = std::min(value_of(t), kGuardOfSwap);
-    find_walls();
-    if (wall_at_.empty() && ring_.closed) return fill_ring(t, a, b);
-    if (wall_at_.size() == 2) turn_in_wall(t, a, b);
-  }
-
-  /// Places in the ring that walls at the edge lead to.
-  void find_walls() {
-    wall_at_.clear();
-    const std::size_t n = ring_.tets.size();
-    for (std::size_t k = 0; k < n; ++k) {
-      const VertexIndex to = ring_.ring[(k + 1) % ring_.ring.size()];
-      if (piece_.wall[piece_.complex.opposite(ring_.tets[k], to)] != 0) wall_at_.push_back(k);
-      if (!ring_.closed && k + 1 == n && piece_.wall[piece_.complex.opposite(ring_.tets[k], ring_.ring[k])] != 0)
-        wall_at_.push_back(k + 1);
-    }
+    piece_.walls_of(ring_, walls_at_);
+    if (walls_at_.empty() && ring_.closed) return fill_ring(t, a, b);
+    if (walls_at_.size() == 2) turn_in_wall(a, b);
   }
 
   void fill_ring(TetIndex t, VertexIndex a, VertexIndex b) {
@@ -117,20 +99,18 @@ class Swapper {
     const float lack = triangulate(a, b, longest_beside(a, b), had_ - gain_);
     if (!(lack < had_ - gain_)) return;
     take_old(lack);
-    emit(0, static_cast<int>(poly_.size()) - 1, a, b, piece_.region[t]);
+    emit(a, b, piece_.region[t]);
   }
 
   /// The edge inside a wall goes: on each side of the wall the ring is triangulated for itself, with the new diagonal
   /// as an edge.
-  void turn_in_wall(TetIndex, VertexIndex a, VertexIndex b) {
-    const std::size_t n = ring_.ring.size(), i = wall_at_[0], j = wall_at_[1];
-    const VertexIndex p = ring_.ring[i], q = ring_.ring[j];
-    const Wall label = piece_.wall[piece_.complex.opposite(ring_.tets[i], ring_.ring[(i + 1) % n])];
+  void turn_in_wall(VertexIndex a, VertexIndex b) {
+    const auto& [i, p, label] = walls_at_[0];
+    const auto& [j, q, other] = walls_at_[1];
+    const std::size_t n = ring_.ring.size();
     if (guide_.keeps(label) || are_frozen(p, q) || (piece_.vertices[p].rim && piece_.vertices[q].rim)) return;
     const bool outer = !ring_.closed;
     if (outer != ((label & kOuter) != 0) || (outer && (i != 0 || j + 1 != n))) return;
-    const Wall other = outer ? piece_.wall[piece_.complex.opposite(ring_.tets.back(), ring_.ring[j - 1])]
-                             : piece_.wall[piece_.complex.opposite(ring_.tets[j], ring_.ring[(j + 1) % n])];
     if (other != label || (outer && ring_.tets.size() < 2)) return;
     if (piece_.tet_with(piece_.vertices[p].rim ? q : p, piece_.vertices[p].rim ? p : q, kNone) != kNone) return;
     const double longest = longest_beside(a, b);
@@ -150,7 +130,7 @@ class Swapper {
       lack += triangulate(a, b, longest, had_ - gain_ - lack);
       if (!(lack < had_ - gain_)) return;
       std::swap(fresh_, made);
-      emit(0, static_cast<int>(poly_.size()) - 1, a, b, piece_.region[ring_.tets[from]]);
+      emit(a, b, piece_.region[ring_.tets[from]]);
       std::swap(fresh_, made);
     }
     take_old(lack);
@@ -180,43 +160,35 @@ class Swapper {
     fresh_.clear(), walls_.clear();
   }
 
-  /// The least that triangles of the polygon, each with a and b, lack together, if that is below `most`; its choices in
-  /// mid_.
+  /// The least that triangles of the polygon, each with a and b, lack together, if that is below `most`.
   float triangulate(VertexIndex a, VertexIndex b, double longest, float most) {
-    const int n = static_cast<int>(poly_.size());
-    for (int len = 1; len < n; ++len)
-      for (int i = 0; i + len < n; ++i) {
-        const int j = i + len;
-        float& best = best_[i][j];
-        best = len == 1 ? 0 : kImpossible;
-        for (int k = i + 1; k < j; ++k) {
-          float sum = best_[i][k] + best_[k][j];
-          if (!(sum < std::min(best, most)) || !add_lack(sum, {a, poly_[i], poly_[k], poly_[j]}) ||
-              !(sum < std::min(best, most)) || !add_lack(sum, {b, poly_[i], poly_[j], poly_[k]}))
-            continue;
-          if (sum < std::min(best, most)) best = sum, mid_[i][j] = k;
-        }
-        const bool is_new = len > 1 && len < n - 1 && best != kImpossible;
-        if (is_new && (are_frozen(poly_[i], poly_[j]) || piece_.is_longer(poly_[i], poly_[j], longest)))
-          best = kImpossible;
-      }
-    return best_[0][n - 1];
+    return -filling_.best(
+        static_cast<int>(poly_.size()), 0, -kImpossible,
+        [&](int i, int k, int j, float low, float high, float best) {
+          float sum = -(low + high);
+          most_ = std::min(-best, most);
+          const bool is_less = sum < most_ && add_lack(sum, {a, poly_[i], poly_[k], poly_[j]}) &&
+                               add_lack(sum, {b, poly_[i], poly_[j], poly_[k]});
+          return is_less ? -sum : -kImpossible;
+        },
+        [&](int i, int j) {
+          return !are_frozen(poly_[i], poly_[j]) && !piece_.is_longer(poly_[i], poly_[j], longest);
+        });
   }
 
-  /// False if the tet must not be.
+  /// False if the tet must not be, or the sum is too large.
   bool add_lack(float& sum, const Tet& c) const {
     const float s = value_of(c);
     if (!(s > 0) || s < guard_) return false;
     sum += lack_of(s);
-    return true;
+    return sum < most_;
   }
 
-  void emit(int i, int j, VertexIndex a, VertexIndex b, std::uint32_t region) {
-    if (j - i < 2) return;
-    const int k = mid_[i][j];
-    for (const Tet& c : {Tet{a, poly_[i], poly_[k], poly_[j]}, Tet{b, poly_[i], poly_[j], poly_[k]}})
-      fresh_.push_back({c, region, piece_.score_of(c)});
-    emit(i, k, a, b, region), emit(k, j, a, b, region);
+  void emit(VertexIndex a, VertexIndex b, std::uint32_t region) {
+    filling_.for_each(static_cast<int>(poly_.size()), [&](int i, int k, int j) {
+      for (const Tet& c : {Tet{a, poly_[i], poly_[k], poly_[j]}, Tet{b, poly_[i], poly_[j], poly_[k]}})
+        fresh_.push_back({c, region, piece_.score_of(c)});
+    });
   }
 
   void try_face(TetIndex t, int i) {
@@ -250,11 +222,10 @@ class Swapper {
   const Guide& guide_;
   bool mends_;
   EdgeRing ring_;
-  std::vector<std::size_t> wall_at_;
+  std::vector<Piece::WallAt> walls_at_;
   std::vector<VertexIndex> poly_;
-  std::array<std::array<float, kLongestRingOfMending + 2>, kLongestRingOfMending + 2> best_;
-  std::array<std::array<int, kLongestRingOfMending + 2>, kLongestRingOfMending + 2> mid_;
-  float gain_ = 0, had_ = 0, guard_ = 0;
+  RingFilling<kLongestRingOfMending + 2> filling_;
+  float gain_ = 0, had_ = 0, guard_ = 0, most_ = 0;
   std::vector<TetIndex> old_;
   std::vector<Piece::NewTet> fresh_;
   std::vector<Piece::NewWall> walls_;

@@ -5,11 +5,13 @@
 #include "adapt/schedule/balance_walls.h"
 #include "adapt/schedule/metric_steps.h"
 #include "adapt/schedule/parts.h"
+#include "adapt/schedule/section.h"
 #include "base/core/disjoint_sets.h"
 #include "base/core/groups.h"
 #include "base/core/parallel.h"
 #include "base/core/validate.h"
 #include "base/geometry/measures.h"
+#include "base/mesh/renumber.h"
 #include "base/shared/blocks.h"
 
 #include <algorithm>
@@ -45,10 +47,8 @@ constexpr int kDone = 200;
 constexpr float kGoodForSwaps = 0.8f, kGoodScore = 0.9f, kGoodOnTheWay = 0.3f;
 /// Edges of other lengths do not come near to what is wanted.
 constexpr double kFarShort = 0.5, kFarLong = 2;
-/// Rounds in which elements are made smaller where the surface deviates too far, how many in a row may be in vain, and
-/// how long the longest edges there are said to be, in wanted lengths, so that they are divided.
+/// Rounds in which elements are made smaller where the surface deviates too far, and how many in a row may be in vain.
 constexpr int kMostMendings = 10, kMostInVain = 3;
-constexpr double kLengthOfStray = 1.6;
 /// Triangles with no edge longer than so many times the bound do not stray because they are large.
 constexpr double kLeastEdgeOfStray = 2;
 /// When smaller elements against deviation are worth it. A round counts as in vain unless it brings the excess over the
@@ -74,18 +74,6 @@ constexpr float kFairOfSize = 0.5f;
 constexpr std::size_t kMostFair = 50;
 /// Rounds once no piece has grown so far that it had to be divided anew: each place is inside a piece several times.
 constexpr int kLastRounds = 2 * kCellStages;
-
-struct Counts {
-  PassCount split, collapse, swap, move, mend;
-  bool grown = false;
-
-  Counts& operator+=(const Counts& o) {
-    split += o.split, collapse += o.collapse, swap += o.swap, move += o.move, mend += o.mend;
-    grown |= o.grown;
-    return *this;
-  }
-  std::uint64_t changes() const { return split.done + collapse.done + swap.done + move.done + mend.done; }
-};
 
 /// The passes on one piece, until sizes fit.
 Counts work_on(Piece& piece, const Guide& guide, int cycles) {
@@ -145,10 +133,7 @@ class Adapter {
     }
     stage_.count("balanced vertices", static_cast<double>(balance_walls(mesh_, guide_, feature_angle_)));
     mend(sum);
-    stage_.count("splits", static_cast<double>(sum.split.done));
-    stage_.count("collapses", static_cast<double>(sum.collapse.done));
-    stage_.count("swaps", static_cast<double>(sum.swap.done));
-    stage_.count("moves", static_cast<double>(sum.move.done));
+    sum.tell(stage_);
     stage_.count("mended places", static_cast<double>(sum.mend.done));
     return sum;
   }
@@ -200,15 +185,8 @@ class Adapter {
       const Tet& c = mesh_.tets[t];
       poor[t] = is_to_mend(mesh_, c) || (again && std::any_of(c.begin(), c.end(), is_active));
     });
-    for (int layer = 0; layer <= kLayersOfMending; ++layer) {
-      for (std::size_t t = 0; t < poor.size(); ++t)
-        if (poor[t])
-          for (const VertexIndex v : mesh_.tets[t]) near[v] = 1;
-      if (layer < kLayersOfMending)
-        parallel_for(poor.size(), [&](std::size_t t) {
-          for (const VertexIndex v : mesh_.tets[t]) poor[t] |= near[v];
-        });
-    }
+    mark_vertices(mesh_.tets, poor, near);
+    for (int layer = 0; layer < kLayersOfMending; ++layer) grow_layer(mesh_.tets, poor, near);
     DisjointSets lots(mesh_.vertices.size());
     for (std::size_t t = 0; t < poor.size(); ++t)
       if (poor[t])
@@ -226,14 +204,9 @@ class Adapter {
     return places;
   }
 
-  /// A piece that was worked on, as it goes back into the mesh.
-  struct Done {
-    std::vector<Vertex> fresh;  ///< new vertices
+  /// A piece that was worked on, as it goes back into the mesh. `vertices`: the new ones, counted on behind kFresh.
+  struct Done : Parts {
     std::vector<std::pair<VertexIndex, Vertex>> changed;
-    std::vector<Tet> tets;  ///< new vertices: counted on behind kFresh
-    std::vector<std::uint32_t> region;
-    std::vector<std::array<Wall, 4>> wall;
-    std::vector<Parts::Line> lines;
     Counts counts;
   };
   static constexpr VertexIndex kFresh = 0x80000000u;
@@ -291,9 +264,7 @@ class Adapter {
         awake.push_back(t);
         continue;
       }
-      done.tets.push_back(mesh_.tets[t]);
-      done.region.push_back(mesh_.region[t]);
-      done.wall.push_back(mesh_.wall[t]);
+      done.add(mesh_, t);
     }
     for (const Parts::Line& l : lines)
       if (here[l.edge[0]] == kNone || here[l.edge[1]] == kNone) done.lines.push_back(l);
@@ -306,12 +277,8 @@ class Adapter {
     Done done;
     const std::vector<TetIndex> awake = take_awake(tets, lines, here, done);
     if (awake.empty()) return done;
-    std::vector<VertexIndex> number;  // in the mesh, of each vertex of the piece
-    Piece piece(mesh_, awake, lines, here);
-    for (const TetIndex t : awake)
-      for (const VertexIndex v : mesh_.tets[t])
-        if (here[v] == kNone) here[v] = static_cast<VertexIndex>(number.size()), number.push_back(v);
-    for (const VertexIndex v : number) here[v] = kNone;
+    std::vector<VertexIndex> number;
+    Piece piece(mesh_, awake, lines, here, number);
     done.counts = work_on(piece, guide_, on_the_way_ ? kCyclesOnTheWay : kCycles);
     if (mends_) done.counts.mend = mend_poor(piece, guide_);
     validate(piece);
@@ -319,11 +286,10 @@ class Adapter {
     const auto known = static_cast<VertexIndex>(number.size());
     const auto global = [&](VertexIndex v) { return v < known ? number[v] : kFresh + (v - known); };
     for (VertexIndex v = 0; v < piece.vertices.size(); ++v) {
-      Vertex out = piece.vertices[v];
       if (v >= known)
-        done.fresh.push_back(out);
+        done.vertices.push_back(piece.vertices[v]);
       else
-        done.changed.emplace_back(number[v], out);
+        done.changed.emplace_back(number[v], piece.vertices[v]);
     }
     for (TetIndex t = 0; t < piece.complex.slots(); ++t) {
       if (!piece.complex.alive(t)) continue;
@@ -365,7 +331,7 @@ class Adapter {
     for (const Done& d : done) {
       for (const auto& [v, vertex] : d.changed) next.vertices[v] = vertex;
       first_fresh.push_back(static_cast<VertexIndex>(next.vertices.size()));
-      next.vertices.insert(next.vertices.end(), d.fresh.begin(), d.fresh.end());
+      next.vertices.insert(next.vertices.end(), d.vertices.begin(), d.vertices.end());
       sum += d.counts;
     }
     for (std::size_t k = 0; k < done.size(); ++k) {
@@ -380,11 +346,7 @@ class Adapter {
         next.lines.push_back({sorted_edge(global(l.edge[0]), global(l.edge[1])), l.path});
       done[k] = {};
     }
-    for (const TetIndex t : left) {
-      next.tets.push_back(mesh_.tets[t]);
-      next.region.push_back(mesh_.region[t]);
-      next.wall.push_back(mesh_.wall[t]);
-    }
+    for (const TetIndex t : left) next.add(mesh_, t);
     next.lines.insert(next.lines.end(), left_lines.begin(), left_lines.end());
     mesh_ = compacted(std::move(next));
     return sum;
@@ -395,15 +357,8 @@ class Adapter {
     std::vector<VertexIndex> number(mesh.vertices.size(), kNone);
     for (const Tet& t : mesh.tets)
       for (const VertexIndex v : t) number[v] = 0;
-    VertexIndex next = 0;
-    for (VertexIndex v = 0; v < number.size(); ++v)
-      if (number[v] != kNone) {
-        mesh.vertices[next] = mesh.vertices[v];
-        number[v] = next++;
-      }
-    mesh.vertices.resize(next);
-    for (Tet& t : mesh.tets)
-      for (VertexIndex& v : t) v = number[v];
+    keep_numbered(mesh.vertices, number);
+    renumber(mesh.tets, number);
     for (Parts::Line& l : mesh.lines) l.edge = sorted_edge(number[l.edge[0]], number[l.edge[1]]);
     return mesh;
   }
@@ -419,42 +374,51 @@ class Adapter {
 
 }  // namespace
 
-MetricFit fit_of(const TetMesh& mesh, const MetricField& metric) {
-  MetricFit fit;
-  std::vector<Vertex> at(mesh.points.size());
-  parallel_for(at.size(), [&](std::size_t v) {
-    at[v].at = mesh.points[v];
-    at[v].metric = metric.at(at[v].at, at[v].hint);
-    at[v].density = density_of(at[v].metric);
+FitFinder::FitFinder(std::span<const Vec3> points, const MetricField& metric, std::size_t edges)
+    : at_(points.size()), seen_(edges) {
+  parallel_for(at_.size(), [&](std::size_t v) {
+    at_[v].at = points[v];
+    at_[v].metric = metric.at(at_[v].at, at_[v].hint);
+    at_[v].density = density_of(at_[v].metric);
   });
-  FlatSet<Edge> seen(8 * mesh.points.size());
-  fit.quality_min = 1, fit.shortest = HUGE_VAL;
-  double sum = 0;
-  for (const Tet& t : mesh.tets) {
-    const Vertex* densest = &at[t[0]];
-    double densities = 0;
-    for (const VertexIndex v : t) {
-      if (at[v].density > densest->density) densest = &at[v];
-      densities += at[v].density;
-    }
-    const Vec3 a = at[t[0]].at, b = at[t[1]].at, c = at[t[2]].at, d = at[t[3]].at;
-    const double six = dot(cross(b - a, c - a), d - a);
-    const double quality = quality_of_score(metric_score(six, densest->metric, densest->density, a, b, c, d));
-    if (quality < fit.quality_min) fit.quality_min = quality, fit.quality_min_at = 0.25 * (a + b + c + d);
-    sum += quality;
-    fit.complexity += six / 24 * densities;
-    for (const auto& [i, j] : kTetEdges) {
-      if (!seen.insert(sorted_edge(t[i], t[j]))) continue;
-      const double l = metric_length(at[t[j]].at - at[t[i]].at, at[t[i]].metric, at[t[j]].metric);
-      ++fit.edges, fit.fitting += l >= kShortest && l <= kLongest;
-      fit.far += l < kFarShort || l > kFarLong;
-      const Vec3 middle = 0.5 * (at[t[i]].at + at[t[j]].at);
-      if (l < fit.shortest) fit.shortest = l, fit.shortest_at = middle;
-      if (l > fit.longest) fit.longest = l, fit.longest_at = middle;
-    }
-  }
-  fit.quality_mean = mesh.tets.empty() ? 0 : sum / static_cast<double>(mesh.tets.size());
+  fit_.quality_min = 1, fit_.shortest = HUGE_VAL;
+}
+
+void FitFinder::add(double quality, double complexity, Vec3 middle) {
+  if (quality < fit_.quality_min) fit_.quality_min = quality, fit_.quality_min_at = middle;
+  qualities_ += quality, ++elements_;
+  fit_.complexity += complexity;
+}
+
+void FitFinder::add_edge(VertexIndex a, VertexIndex b) {
+  if (!seen_.insert(sorted_edge(a, b))) return;
+  const double l = metric_length(at_[b].at - at_[a].at, at_[a].metric, at_[b].metric);
+  ++fit_.edges, fit_.fitting += l >= kShortest && l <= kLongest;
+  fit_.far += l < kFarShort || l > kFarLong;
+  const Vec3 middle = 0.5 * (at_[a].at + at_[b].at);
+  if (l < fit_.shortest) fit_.shortest = l, fit_.shortest_at = middle;
+  if (l > fit_.longest) fit_.longest = l, fit_.longest_at = middle;
+}
+
+MetricFit FitFinder::found() const {
+  MetricFit fit = fit_;
+  fit.quality_mean = elements_ == 0 ? 0 : qualities_ / static_cast<double>(elements_);
   return fit;
+}
+
+MetricFit fit_of(const TetMesh& mesh, const MetricField& metric) {
+  FitFinder fit(mesh.points, metric, 8 * mesh.points.size());
+  for (const Tet& t : mesh.tets) {
+    const Vertex& densest = densest_of({&fit.at(t[0]), &fit.at(t[1]), &fit.at(t[2]), &fit.at(t[3])});
+    double densities = 0;
+    for (const VertexIndex v : t) densities += fit.at(v).density;
+    const Vec3 a = fit.at(t[0]).at, b = fit.at(t[1]).at, c = fit.at(t[2]).at, d = fit.at(t[3]).at;
+    const double six = dot(cross(b - a, c - a), d - a);
+    fit.add(quality_of_score(metric_score(six, densest.metric, densest.density, a, b, c, d)), six / 24 * densities,
+            0.25 * (a + b + c + d));
+    for (const auto& [i, j] : kTetEdges) fit.add_edge(t[i], t[j]);
+  }
+  return fit.found();
 }
 
 namespace {
@@ -479,12 +443,6 @@ void freeze(Parts& parts, std::span<const std::uint8_t> frozen) {
 
 namespace {
 
-void ask_for(Vertex& vertex, const Metric& metric) {
-  vertex.metric = metric;
-  vertex.density = density_of(metric);
-  vertex.exact = false, vertex.active = true, vertex.calmness = Vertex::kStirred;
-}
-
 /// Lengths grow no faster than by a part of the way from these vertices on.
 void grade_from(Parts& parts, std::vector<VertexIndex> queue) {
   const Groups<> corners = group_by_owner(static_cast<std::uint32_t>(parts.vertices.size()),
@@ -505,28 +463,6 @@ void grade_from(Parts& parts, std::vector<VertexIndex> queue) {
   }
 }
 
-/// Asks for smaller elements at these triangles, whatever the metric wants: such that the longest edge of each is
-/// divided.
-void ask_for_smaller(Parts& parts, const std::vector<SmoothWalls::Stray>& strays) {
-  std::vector<double> factor(parts.vertices.size(), 1);
-  for (const auto& [t, bound] : strays) {
-    double longest = 0;
-    for (std::size_t i = 0; i < 3; ++i) {
-      const Vertex &a = parts.vertices[t[i]], &b = parts.vertices[t[(i + 1) % 3]];
-      longest = std::max(longest, metric_length(b.at - a.at, a.metric, b.metric));
-    }
-    if (longest > 0)
-      for (const VertexIndex v : t) factor[v] = std::max(factor[v], kLengthOfStray / longest);
-  }
-  std::vector<VertexIndex> asked;
-  for (VertexIndex v = 0; v < factor.size(); ++v) {
-    if (factor[v] <= 1) continue;
-    asked.push_back(v);
-    ask_for(parts.vertices[v], factor[v] * factor[v] * parts.vertices[v].metric);
-  }
-  grade_from(parts, std::move(asked));
-}
-
 /// Brings walls that stray too far nearer to the ground.
 void mend_walls(Parts& parts, const Ground& ground, const AdaptRules& rules, Adapter& adapter, Adapted& out,
                 const WallBounds& bounds, const Stage& stage) {
@@ -540,14 +476,10 @@ void mend_walls(Parts& parts, const Ground& ground, const AdaptRules& rules, Ada
   std::vector<Deviation> nearest = out.deviations;
   for (int k = 0, in_vain = 0; k < kMostMendings && in_vain < kMostInVain && excess_of(nearest) > 1; ++k) {
     stage.check();
-    std::vector<SmoothWalls::Stray> strays = smooth.strays(parts, kShareOfBound);
-    std::erase_if(strays, [&](const SmoothWalls::Stray& s) {
-      const auto at = [&](std::size_t i) { return parts.vertices[s.corners[i]].at; };
-      return longest_squared_edge(at(0), at(1), at(2)) < kLeastEdgeOfStray * kLeastEdgeOfStray * s.bound * s.bound;
-    });
+    const std::vector<SmoothWalls::Stray> strays = smooth.strays(parts, kShareOfBound, kLeastEdgeOfStray);
     if (strays.empty() || parts.tets.size() > kGrowthOfMending * first.tets.size() + kRoomOfPiece) break;
     stage.count("wall triangles that strayed", static_cast<double>(strays.size()));
-    ask_for_smaller(parts, strays);
+    grade_from(parts, ask_for_smaller(parts.vertices, strays));
     adapter.run();
     const std::vector<Deviation> now = smooth.of(parts);
     in_vain = excess_of(now) < kLeastProgress * excess_of(nearest) ? 0 : in_vain + 1;

@@ -56,6 +56,25 @@ struct MetricFit {
 };
 MetricFit fit_of(const TetMesh& mesh, const MetricField& metric);
 
+/// A MetricFit while it is found out.
+class FitFinder {
+ public:
+  FitFinder(std::span<const Vec3> points, const MetricField& metric, std::size_t edges);
+  const Vertex& at(VertexIndex v) const { return at_[v]; }
+  /// Of an element around this middle.
+  void add(double quality, double complexity, Vec3 middle);
+  /// Each edge counts once.
+  void add_edge(VertexIndex a, VertexIndex b);
+  MetricFit found() const;
+
+ private:
+  std::vector<Vertex> at_;
+  FlatSet<Edge> seen_;
+  MetricFit fit_;
+  double qualities_ = 0;
+  std::size_t elements_ = 0;
+};
+
 /// What became of walls where a surface was given; nothing where none was.
 struct GivenFit {
   std::uint64_t walls = 0, own_walls = 0;  ///< triangles of old walls; those that it is not near

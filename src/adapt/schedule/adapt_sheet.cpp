@@ -3,10 +3,10 @@
 #include "adapt/schedule/sheet.h"
 #include "adapt/schedule/sheet_cells.h"
 #include "adapt/schedule/sheet_passes.h"
-#include "base/core/disjoint_sets.h"
 #include "base/core/parallel.h"
 #include "base/core/validate.h"
 #include "base/geometry/measures.h"
+#include "base/mesh/surface_topology.h"
 #include "base/shared/blocks.h"
 
 #include <algorithm>
@@ -20,11 +20,10 @@ namespace {
 constexpr int kMostCyclesOfSheet = 60;
 /// Less than one change for so many triangles is not worth another cycle.
 constexpr int kDoneOfSheet = 200;
-/// As of adapt_mesh(): times that triangles are made smaller where they stray too far, how long their longest edges are
-/// made to be, the part of the bound within which all is near enough, and the least size that may be a reason.
+/// As of adapt_mesh(): times that triangles are made smaller where they stray too far, the part of the bound within
+/// which all is near enough, and the least size that may be a reason.
 constexpr int kMostMendingsOfSheet = 6;
-constexpr double kLengthOfSheetStray = 1.6, kShareOfSheetBound = 0.85, kLeastEdgeOfSheetStray = 8;
-constexpr double kFarShortOfSheet = 0.5, kFarLongOfSheet = 2;
+constexpr double kShareOfSheetBound = 0.85, kLeastEdgeOfSheetStray = 8;
 
 /// What lies on both sides, and the patch: what stays of a triangle.
 using Kept = std::pair<std::uint32_t, Sides>;
@@ -32,7 +31,9 @@ using Kept = std::pair<std::uint32_t, Sides>;
 class SheetAdapter {
  public:
   SheetAdapter(const SurfaceMesh& given, const AdaptRules& rules, std::span<const VertexIndex> fixed)
-      : input_(given), walls_(walls_of(given, rules)), is_fixed_(touching(given)) {
+      : input_(given),
+        walls_(walls_of(given, rules)),
+        is_fixed_(touching_vertices(given.triangles, walls_.edges, given.points.size(), FansOver::kAllEdges)) {
     for (const VertexIndex v : fixed) is_fixed_[v] = 1;
   }
 
@@ -67,46 +68,19 @@ class SheetAdapter {
     walls.edges = make_edge_table(given.points.size(), given.triangles);
     walls.lines = detect_features(walls.surface, walls.edges, rules.feature_angle);
     walls.path = find_paths(given.points.size(), walls.lines, [](std::uint32_t, std::uint32_t) { return true; });
-    walls.outer.assign(given.triangles.size(), is_turned_one_way(walls, rules.given != nullptr));
+    walls.outer.assign(given.triangles.size(), has_front(walls, rules.given != nullptr));
     return walls;
   }
 
   /// Of what is to lie on a given surface also outward.
-  static bool is_turned_one_way(const Walls& walls, bool and_outward) {
+  static bool has_front(const Walls& walls, bool and_outward) {
     const auto& triangles = walls.surface.triangles;
-    for (std::size_t e = 0; e < walls.edges.size(); ++e) {
-      const auto uses = walls.edges.uses(e);
-      if (uses.size() > 2 || (and_outward && uses.size() != 2)) return false;
-      if (uses.size() == 2 && start_of(triangles, uses[0]) == start_of(triangles, uses[1])) return false;
-    }
+    if (!is_turned_one_way(triangles, walls.edges, and_outward)) return false;
     double volume = 0;
     for (const auto& [a, b, c] : triangles)
       volume += six_volumes(walls.surface.points[0], walls.surface.points[a], walls.surface.points[b],
                             walls.surface.points[c]);
     return !and_outward || volume > 0;
-  }
-
-  /// Vertices where fans of triangles meet that share no edge there.
-  static std::vector<std::uint8_t> touching(const SurfaceMesh& surface) {
-    const EdgeTable table = make_edge_table(surface.points.size(), surface.triangles);
-    const auto corners = static_cast<std::uint32_t>(3 * surface.triangles.size());
-    DisjointSets fans(corners);
-    const auto corner_at = [&](HalfEdge h, VertexIndex v) {
-      return start_of(surface.triangles, h) == v ? h : next_of(h);
-    };
-    for (std::size_t e = 0; e < table.size(); ++e) {
-      const auto uses = table.uses(e);
-      for (std::size_t k = 1; k < uses.size(); ++k)
-        for (const VertexIndex v : table.edges[e]) fans.join(corner_at(uses[0], v), corner_at(uses[k], v));
-    }
-    std::vector<std::uint32_t> fan(surface.points.size(), kNone);
-    std::vector<std::uint8_t> touches(surface.points.size(), 0);
-    for (std::uint32_t c = 0; c < corners; ++c) {
-      const VertexIndex v = surface.triangles[c / 3][c % 3];
-      if (fan[v] == kNone) fan[v] = fans.find(c);
-      touches[v] |= fan[v] != fans.find(c);
-    }
-    return touches;
   }
 
   Sheet sheet_of(const Walls& walls, const AdaptRules& rules) const {
@@ -122,7 +96,7 @@ class SheetAdapter {
       if (is_fixed_[v]) vertices[v].kind = Kind::kFixed, vertices[v].off = false;
     Sheet sheet(std::move(vertices), walls.surface.triangles, walls.surface.patch);
     for (std::uint32_t e = 0; e < walls.lines.edges.size(); ++e)
-      sheet.set_line(walls.lines.edges[e][0], walls.lines.edges[e][1], walls.path[e]);
+      sheet.line_edges.set(walls.lines.edges[e][0], walls.lines.edges[e][1], walls.path[e]);
     return sheet;
   }
 
@@ -133,20 +107,17 @@ class SheetAdapter {
   }
 
   static void cycles(Sheet& sheet, const SheetGuide& guide, const Stage& stage) {
-    SheetCounts sum;
+    Counts sum;
     for (int cycle = 0; cycle < kMostCyclesOfSheet; ++cycle) {
       stage.check();
-      const SheetCounts now = cycle_in_cells(sheet, guide, cycle);
+      const Counts now = cycle_in_cells(sheet, guide, cycle);
       validate(sheet);
       sum += now;
       stage.progress(-1);
       // Before all stages have been, much may be left across cells.
       if (cycle + 1 >= kCellStages && now.changes() * kDoneOfSheet < triangles_of(sheet)) break;
     }
-    stage.count("splits", static_cast<double>(sum.split.done));
-    stage.count("collapses", static_cast<double>(sum.collapse.done));
-    stage.count("swaps", static_cast<double>(sum.swap.done));
-    stage.count("moves", static_cast<double>(sum.move.done));
+    sum.tell(stage);
   }
 
   /// The triangles, numbered as the vertices of the sheet.
@@ -156,23 +127,6 @@ class SheetAdapter {
     for (std::uint32_t t = 0; t < sheet.slots(); ++t)
       if (sheet.alive(t)) surface.triangles.push_back(sheet.corners(t)), surface.patch.push_back(sheet.part(t));
     return surface;
-  }
-
-  static void ask_for_smaller(Sheet& sheet, const std::vector<SmoothWalls::Stray>& strays) {
-    std::vector<double> factor(sheet.vertices.size(), 1);
-    for (const auto& [t, bound] : strays) {
-      double longest = 0;
-      for (std::size_t i = 0; i < 3; ++i) longest = std::max(longest, sheet.edge_length(t[i], t[(i + 1) % 3]));
-      if (longest > 0)
-        for (const VertexIndex v : t) factor[v] = std::max(factor[v], kLengthOfSheetStray / longest);
-    }
-    for (VertexIndex v = 0; v < factor.size(); ++v) {
-      Vertex& vertex = sheet.vertices[v];
-      if (factor[v] <= 1) continue;
-      vertex.metric = factor[v] * factor[v] * vertex.metric;
-      vertex.density = density_of(vertex.metric);
-      vertex.exact = false, vertex.active = true;
-    }
   }
 
   /// Brings triangles that stray too far nearer to the ground.
@@ -187,14 +141,10 @@ class SheetAdapter {
     out.deviation = worst_of(smooth.of(walls_of(sheet)));
     Sheet best = sheet;
     for (int k = 0; k < kMostMendingsOfSheet && out.deviation.excess() > 1; ++k) {
-      std::vector<SmoothWalls::Stray> strays = smooth.strays(walls_of(sheet), kShareOfSheetBound);
-      std::erase_if(strays, [&](const SmoothWalls::Stray& s) {
-        const auto [a, b, c] = sheet.places(s.corners);
-        return longest_squared_edge(a, b, c) < kLeastEdgeOfSheetStray * kLeastEdgeOfSheetStray * s.bound * s.bound;
-      });
+      const auto strays = smooth.strays(walls_of(sheet), kShareOfSheetBound, kLeastEdgeOfSheetStray);
       if (strays.empty()) break;
       stage.count("triangles that strayed", static_cast<double>(strays.size()));
-      ask_for_smaller(sheet, strays);
+      ask_for_smaller(sheet.vertices, strays);
       cycles(sheet, guide, stage);
       const Deviation now = worst_of(smooth.of(walls_of(sheet)));
       if (now.upper < out.deviation.upper) out.deviation = now, best = sheet;
@@ -235,39 +185,16 @@ class SheetAdapter {
 }  // namespace
 
 MetricFit fit_of(const SurfaceMesh& surface, const MetricField& metric) {
-  std::vector<Vertex> at(surface.points.size());
-  parallel_for(at.size(), [&](std::size_t v) {
-    at[v].at = surface.points[v];
-    at[v].metric = metric.at(at[v].at, at[v].hint);
-    at[v].density = density_of(at[v].metric);
-  });
-  MetricFit fit;
-  fit.quality_min = 1, fit.shortest = HUGE_VAL;
-  double sum = 0;
-  FlatSet<Edge> seen(3 * surface.points.size());
+  FitFinder fit(surface.points, metric, 3 * surface.points.size());
   for (const Triangle& t : surface.triangles) {
-    const double quality = Sheet::score_of({&at[t[0]], &at[t[1]], &at[t[2]]});
-    if (quality < fit.quality_min)
-      fit.quality_min = quality, fit.quality_min_at = centroid(at[t[0]].at, at[t[1]].at, at[t[2]].at);
-    sum += quality;
-    const Vec3 u = at[t[1]].at - at[t[0]].at, w = at[t[2]].at - at[t[0]].at;
-    for (const VertexIndex v : t) {
-      const Metric& m = at[v].metric;
-      const double uw = dot(u, m.times(w));
-      fit.complexity += std::sqrt(std::max(m.squared(u) * m.squared(w) - uw * uw, 0.0)) / 6;
-    }
-    for (std::size_t i = 0; i < 3; ++i) {
-      const Vertex &a = at[t[i]], &b = at[t[(i + 1) % 3]];
-      if (!seen.insert(sorted_edge(t[i], t[(i + 1) % 3]))) continue;
-      const double l = Sheet::length_between(a, b);
-      ++fit.edges, fit.fitting += l >= kShortest && l <= kLongest;
-      fit.far += l < kFarShortOfSheet || l > kFarLongOfSheet;
-      if (l < fit.shortest) fit.shortest = l, fit.shortest_at = 0.5 * (a.at + b.at);
-      if (l > fit.longest) fit.longest = l, fit.longest_at = 0.5 * (a.at + b.at);
-    }
+    const std::array<const Vertex*, 3> corners{&fit.at(t[0]), &fit.at(t[1]), &fit.at(t[2])};
+    const auto& [a, b, c] = corners;
+    double complexity = 0;
+    for (const Vertex* v : corners) complexity += metric_area(v->metric, b->at - a->at, c->at - a->at) / 3;
+    fit.add(Sheet::score_of(corners), complexity, centroid(a->at, b->at, c->at));
+    for (std::size_t i = 0; i < 3; ++i) fit.add_edge(t[i], t[(i + 1) % 3]);
   }
-  fit.quality_mean = surface.triangles.empty() ? 0 : sum / static_cast<double>(surface.triangles.size());
-  return fit;
+  return fit.found();
 }
 
 AdaptedSheet adapt_sheet(const SurfaceMesh& surface, const MetricField& metric, const AdaptRules& rules,

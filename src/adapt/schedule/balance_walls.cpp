@@ -1,8 +1,8 @@
 #include "adapt/schedule/balance_walls.h"
 
 #include "adapt/ground/balance_steps.h"
+#include "adapt/schedule/parts.h"
 #include "base/core/parallel.h"
-#include "base/mesh/face_table.h"
 
 #include <algorithm>
 #include <utility>
@@ -16,43 +16,12 @@ constexpr int kMostBalancings = 2;
 /// Elements keep this part of their scores, unless these are this good still.
 constexpr float kKeptOfBalance = 0.9f, kGoodOfBalance = 0.6f, kGoodOfBalanceInMetric = 0.3f;
 
-/// The walls of a mesh of parts, and lines on them as the mesh is when it comes again.
-struct WallsNow {
-  Walls walls;
-  std::vector<VertexIndex> vertex;  ///< per point
-};
-
-WallsNow walls_now(const Parts& parts, double feature_angle) {
-  WallsNow now;
-  SurfaceMesh& surface = now.walls.surface;
-  std::vector<VertexIndex> number(parts.vertices.size(), kNone);
-  FlatSet<Triangle> seen;
-  for (TetIndex t = 0; t < parts.tets.size(); ++t)
-    for (int i = 0; i < 4; ++i) {
-      const Wall w = parts.wall[t][static_cast<std::size_t>(i)];
-      if (w == 0) continue;
-      Triangle f = face_of(parts.tets[t], i);
-      if ((w & kOuter) == 0 && !seen.insert(face_key(f))) continue;
-      for (VertexIndex& v : f) {
-        VertexIndex& n = number[v];
-        if (n == kNone) {
-          n = static_cast<VertexIndex>(now.vertex.size());
-          now.vertex.push_back(v);
-          surface.points.push_back(parts.vertices[v].at);
-        }
-        v = n;
-      }
-      surface.triangles.push_back(f);
-      surface.patch.push_back((w & ~kOuter) - 1);
-      now.walls.outer.push_back((w & kOuter) != 0);
-    }
-  turn_alike(now.walls);
-  now.walls.lines = detect_features(surface, now.walls.edges, feature_angle);
-  return now;
-}
-
 float score_in(const std::vector<Vertex>& vertices, const Tet& c, bool isotropic) {
   return score_of_corners({&vertices[c[0]], &vertices[c[1]], &vertices[c[2]], &vertices[c[3]]}, isotropic);
+}
+
+bool may_balance(const Vertex& v) {
+  return v.kind == Kind::kSurface && !v.stays();
 }
 
 /// Takes back what makes elements worse, until none is.
@@ -75,12 +44,15 @@ void take_back(const Parts& parts, std::vector<Vertex>& moved, std::vector<std::
 }
 
 std::size_t balance_once(Parts& parts, const Guide& guide, double feature_angle) {
-  const WallsNow now = walls_now(parts, feature_angle);
+  // Lines on them are where they are when the mesh comes again.
+  const WallsOfParts now = wall_triangles(parts, [](const Triangle&, std::uint32_t) { return false; });
+  Walls walls;
+  walls.surface = now.surface, walls.outer = now.outer;
+  turn_alike(walls);
+  walls.lines = detect_features(walls.surface, walls.edges, feature_angle);
   std::vector<std::uint8_t> may_move;
-  for (const VertexIndex v : now.vertex)
-    may_move.push_back(parts.vertices[v].kind == Kind::kSurface && !parts.vertices[v].frozen &&
-                       !parts.vertices[v].held);
-  const std::vector<Vec3> steps = steps_to_balance(now.walls, may_move, guide.ground, guide.tolerances);
+  for (const VertexIndex v : now.vertex) may_move.push_back(may_balance(parts.vertices[v]));
+  const std::vector<Vec3> steps = steps_to_balance(walls, may_move, guide.ground, guide.tolerances);
   std::vector<Vertex> moved = parts.vertices;
   std::vector<std::uint8_t> moves(moved.size(), 0);
   for (std::size_t p = 0; p < steps.size(); ++p) {
@@ -92,7 +64,6 @@ std::size_t balance_once(Parts& parts, const Guide& guide, double feature_angle)
     moves[now.vertex[p]] = 1;
   }
   take_back(parts, moved, moves);
-
   parts.vertices = std::move(moved);
   return static_cast<std::size_t>(std::count(moves.begin(), moves.end(), 1));
 }
@@ -101,8 +72,7 @@ std::size_t balance_once(Parts& parts, const Guide& guide, double feature_angle)
 
 std::size_t balance_walls(Parts& parts, const Guide& guide, double feature_angle) {
   if (guide.ground.given() || guide.tolerance <= 0) return 0;
-  const auto may_move = [](const Vertex& v) { return v.kind == Kind::kSurface && !v.frozen && !v.held; };
-  if (std::none_of(parts.vertices.begin(), parts.vertices.end(), may_move)) return 0;
+  if (std::none_of(parts.vertices.begin(), parts.vertices.end(), may_balance)) return 0;
   std::size_t moved = 0;
   for (int k = 0; k < kMostBalancings; ++k) moved = std::max(moved, balance_once(parts, guide, feature_angle));
   return moved;

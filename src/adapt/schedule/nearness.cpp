@@ -1,10 +1,9 @@
 #include "adapt/schedule/nearness.h"
 
-#include "base/core/flat_map.h"
 #include "base/core/parallel.h"
 #include "base/geometry/hausdorff.h"
 #include "base/geometry/measures.h"
-#include "base/mesh/face_table.h"
+#include "base/mesh/renumber.h"
 
 #include <algorithm>
 #include <cmath>
@@ -17,26 +16,10 @@ namespace {
 /// The triangles that stand for the smooth surface are this much nearer to it than what is asked for, and distances
 /// are known as well.
 constexpr double kPartOfTolerance = 0.1;
+/// How long the longest edges of triangles that stray are said to be, in wanted lengths, so that they are divided.
+constexpr double kLengthOfStray = 1.6;
 /// Each side of a triangle is divided into so many where strays are looked for.
 constexpr int kDivisions = 4;
-
-/// Numbers for the vertices that a list of triangles has.
-class PointsInUse {
- public:
-  explicit PointsInUse(std::size_t vertices) : number_(vertices, kNone) {}
-  template <class Place>
-  VertexIndex add(VertexIndex v, SurfaceMesh& surface, std::vector<VertexIndex>& vertex, const Place& place) {
-    if (number_[v] == kNone) {
-      number_[v] = static_cast<VertexIndex>(vertex.size());
-      vertex.push_back(v);
-      surface.points.push_back(place(v));
-    }
-    return number_[v];
-  }
-
- private:
-  std::vector<VertexIndex> number_;
-};
 
 bool all_frozen(const Triangle& t, std::span<const std::uint8_t> frozen) {
   return !frozen.empty() && frozen[t[0]] && frozen[t[1]] && frozen[t[2]];
@@ -85,15 +68,12 @@ SmoothWalls::SmoothWalls(const Ground& ground, const WallBounds& bounds) : bound
   make_groups();
   const SurfaceMesh& walls = ground.walls().surface;
   std::vector<std::uint32_t> free;
-  PointsInUse used(walls.points.size());
-  std::vector<VertexIndex> vertex;
+  PointsTaken taken(walls.points);
   SurfaceMesh old, all;
   for (std::uint32_t t = 0; t < walls.triangles.size(); ++t) {
-    Triangle corners = walls.triangles[t];
-    if (stays(corners, walls.patch[t])) continue;
+    if (stays(walls.triangles[t], walls.patch[t])) continue;
     if (!ground.is_covered(t)) free.push_back(t);
-    for (VertexIndex& v : corners) v = used.add(v, old, vertex, [&](VertexIndex u) { return walls.points[u]; });
-    old.triangles.push_back(corners);
+    old.triangles.push_back(taken.take(walls.triangles[t], old.points));
     old.patch.push_back(walls.patch[t]);
   }
   std::vector<std::vector<TriangleCorners>> made(free.size());
@@ -149,39 +129,20 @@ void SmoothWalls::add_given(const Ground& ground, SurfaceMesh& all) {
   for (const Ground::GivenPieces& pieces : made) add_triangles(pieces.others, all);
 }
 
-SmoothWalls::WallsOfParts SmoothWalls::walls_of(const Parts& mesh) const {
-  WallsOfParts walls;
-  PointsInUse used(mesh.vertices.size());
-  FlatSet<Triangle> seen;
-  for (TetIndex t = 0; t < mesh.tets.size(); ++t)
-    for (int i = 0; i < 4; ++i) {
-      const Wall w = mesh.wall[t][static_cast<std::size_t>(i)];
-      if (w == 0) continue;
-      const std::uint32_t part = (w & ~kOuter) - 1;
-      Triangle f = face_of(mesh.tets[t], i);
-      if (std::all_of(f.begin(), f.end(), [&](VertexIndex v) { return mesh.vertices[v].frozen; })) continue;
-      if (!bounds_.kept.empty() && bounds_.kept[part]) continue;
-      if ((w & kOuter) == 0 && !seen.insert(face_key(f))) continue;
-      for (VertexIndex& v : f)
-        v = used.add(v, walls.surface, walls.vertex, [&](VertexIndex u) { return mesh.vertices[u].at; });
-      walls.surface.triangles.push_back(f);
-      walls.surface.patch.push_back(part);
-    }
-  return walls;
+WallsOfParts SmoothWalls::walls_of(const Parts& mesh) const {
+  return wall_triangles(mesh, [&](const Triangle& f, std::uint32_t part) {
+    return std::all_of(f.begin(), f.end(), [&](VertexIndex v) { return mesh.vertices[v].frozen; }) ||
+           (!bounds_.kept.empty() && bounds_.kept[part] != 0);
+  });
 }
 
 std::vector<SurfaceMesh> SmoothWalls::divided_in_groups(const SurfaceMesh& walls) const {
   if (groups_.size() == 1) return {walls};
   std::vector<SurfaceMesh> parts(groups_.size());
   for (std::uint32_t g = 0; g < parts.size(); ++g) {
-    PointsInUse used(walls.points.size());
-    std::vector<VertexIndex> vertex;
-    for (std::size_t t = 0; t < walls.triangles.size(); ++t) {
-      if (group_[walls.patch[t]] != g) continue;
-      Triangle corners = walls.triangles[t];
-      for (VertexIndex& v : corners) v = used.add(v, parts[g], vertex, [&](VertexIndex u) { return walls.points[u]; });
-      parts[g].triangles.push_back(corners);
-    }
+    PointsTaken taken(walls.points);
+    for (std::size_t t = 0; t < walls.triangles.size(); ++t)
+      if (group_[walls.patch[t]] == g) parts[g].triangles.push_back(taken.take(walls.triangles[t], parts[g].points));
   }
   return parts;
 }
@@ -217,15 +178,15 @@ Deviation SmoothWalls::distance_of(const Group& group, const SurfaceMesh& walls,
   return {farther.lower, std::max(there.upper, back.upper), farther.place, group.bound};
 }
 
-std::vector<SmoothWalls::Stray> SmoothWalls::strays(const Parts& mesh, double share) const {
+std::vector<SmoothWalls::Stray> SmoothWalls::strays(const Parts& mesh, double share, double least_edge) const {
   const WallsOfParts walls = walls_of(mesh);
-  std::vector<Stray> found = strays(walls.surface, share);
+  std::vector<Stray> found = strays(walls.surface, share, least_edge);
   for (Stray& s : found)
     for (VertexIndex& v : s.corners) v = walls.vertex[v];
   return found;
 }
 
-std::vector<SmoothWalls::Stray> SmoothWalls::strays(const SurfaceMesh& surface, double share) const {
+std::vector<SmoothWalls::Stray> SmoothWalls::strays(const SurfaceMesh& surface, double share, double least_edge) const {
   const TriangleTree tree(surface);
   const auto bound_of = [&](std::size_t t) { return groups_[group_[surface.patch[t]]].bound; };
   std::vector<std::uint8_t> far(surface.triangles.size(), 0);
@@ -245,9 +206,38 @@ std::vector<SmoothWalls::Stray> SmoothWalls::strays(const SurfaceMesh& surface, 
       if (t != kNone) far[t] = 1;
   }
   std::vector<Stray> found;
-  for (std::size_t t = 0; t < far.size(); ++t)
-    if (far[t]) found.push_back({surface.triangles[t], bound_of(t)});
+  for (std::size_t t = 0; t < far.size(); ++t) {
+    const auto [a, b, c] = corners_on(surface, surface.triangles[t]);
+    const double bound = bound_of(t), least = least_edge * bound;
+    if (far[t] && longest_squared_edge(a, b, c) >= least * least) found.push_back({surface.triangles[t], bound});
+  }
   return found;
+}
+
+void ask_for(Vertex& vertex, const Metric& metric) {
+  vertex.metric = metric;
+  vertex.density = density_of(metric);
+  vertex.exact = false, vertex.active = true, vertex.calmness = Vertex::kStirred;
+}
+
+std::vector<VertexIndex> ask_for_smaller(std::vector<Vertex>& vertices, std::span<const SmoothWalls::Stray> strays) {
+  std::vector<double> factor(vertices.size(), 1);
+  for (const auto& [t, bound] : strays) {
+    double longest = 0;
+    for (std::size_t i = 0; i < 3; ++i) {
+      const Vertex &a = vertices[t[i]], &b = vertices[t[(i + 1) % 3]];
+      longest = std::max(longest, metric_length(b.at - a.at, a.metric, b.metric));
+    }
+    if (longest > 0)
+      for (const VertexIndex v : t) factor[v] = std::max(factor[v], kLengthOfStray / longest);
+  }
+  std::vector<VertexIndex> asked;
+  for (VertexIndex v = 0; v < factor.size(); ++v) {
+    if (factor[v] <= 1) continue;
+    asked.push_back(v);
+    ask_for(vertices[v], factor[v] * factor[v] * vertices[v].metric);
+  }
+  return asked;
 }
 
 }  // namespace octafront::adapt

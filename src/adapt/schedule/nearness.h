@@ -7,6 +7,7 @@
 
 #include "adapt/ground/ground.h"
 #include "adapt/passes/piece.h"
+#include "adapt/schedule/parts.h"
 #include "base/geometry/triangle_tree.h"
 
 #include <cmath>
@@ -60,8 +61,9 @@ class SmoothWalls {
     Triangle corners;
     double bound;  ///< of its group
   };
-  std::vector<Stray> strays(const Parts& mesh, double share) const;
-  std::vector<Stray> strays(const SurfaceMesh& walls, double share) const;
+  /// Those of no edge longer than `least_edge` times the bound do not stray because they are large.
+  std::vector<Stray> strays(const Parts& mesh, double share, double least_edge) const;
+  std::vector<Stray> strays(const SurfaceMesh& walls, double share, double least_edge) const;
 
  private:
   /// How well distances are known, in parts of tolerance_: at first, and where that decides.
@@ -71,10 +73,7 @@ class SmoothWalls {
     double bound = 0;
     SurfaceMesh old, smooth;
   };
-  struct WallsOfParts {
-    SurfaceMesh surface;  ///< without unused points
-    std::vector<VertexIndex> vertex;
-  };
+  /// Those that may change.
   WallsOfParts walls_of(const Parts& mesh) const;
   bool stays(const Triangle& corners, std::uint32_t part) const;
   void make_groups();
@@ -89,5 +88,11 @@ class SmoothWalls {
   std::vector<Group> groups_;
   TriangleTree tree_;  ///< of all that is smooth, and of what was given and stands for no wall that may change
 };
+
+/// Asks for smaller elements at these triangles, whatever the metric wants: such that the longest edge of each is
+/// divided. Returns the vertices that ask.
+std::vector<VertexIndex> ask_for_smaller(std::vector<Vertex>& vertices, std::span<const SmoothWalls::Stray> strays);
+/// Gives a vertex another metric than that of its place.
+void ask_for(Vertex& vertex, const Metric& metric);
 
 }  // namespace octafront::adapt

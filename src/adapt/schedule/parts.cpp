@@ -1,14 +1,24 @@
 #include "adapt/schedule/parts.h"
 
-#include "base/core/disjoint_sets.h"
 #include "base/core/groups.h"
 #include "base/mesh/adjacency.h"
+#include "base/mesh/surface_topology.h"
 
 #include <algorithm>
 #include <map>
 
 namespace octafront::adapt {
 namespace {
+
+/// Lines that stay must not be divided; what they are called is known by their edges then.
+void keep_line(TakenApart& taken, const Edge& edge) {
+  std::vector<Parts::Line>& lines = taken.parts.lines;
+  const auto line = std::lower_bound(lines.begin(), lines.end(), edge,
+                                     [](const Parts::Line& l, const Edge& e) { return l.edge < e; });
+  if (line == lines.end() || line->edge != edge || line->path == Parts::kStays) return;
+  taken.labels.staying[edge] = taken.labels.paths[line->path];
+  line->path = Parts::kStays;
+}
 
 class TakerApart {
  public:
@@ -117,28 +127,9 @@ class TakerApart {
   /// Edges where the boundary touches itself have tets on several sides that do not know each other.
   void mark_touching_edges() {
     const EdgeTable table = make_edge_table(mesh_.points.size(), mesh_.boundary);
-    const auto triangles = static_cast<std::uint32_t>(mesh_.boundary.size());
-    DisjointSets fans(3 * std::size_t{triangles});
-    for (std::size_t e = 0; e < table.size(); ++e) {
-      const auto uses = table.uses(e);
-      if (uses.size() == 2) {
-        fans.join(uses[0], next_of(uses[1])), fans.join(next_of(uses[0]), uses[1]);
-        continue;
-      }
-      for (const VertexIndex v : table.edges[e]) touching_.push_back(v);
-      std::vector<Parts::Line>& lines = out_.parts.lines;
-      const auto line = std::lower_bound(lines.begin(), lines.end(), table.edges[e],
-                                         [](const Parts::Line& l, const Edge& edge) { return l.edge < edge; });
-      if (line == lines.end() || line->edge != table.edges[e] || line->path == Parts::kStays) continue;
-      out_.labels.staying[line->edge] = out_.labels.paths[line->path];
-      line->path = Parts::kStays;
-    }
-    std::vector<std::uint32_t> fan(mesh_.points.size(), kNone);
-    for (std::uint32_t c = 0; c < 3 * triangles; ++c) {
-      std::uint32_t& known = fan[mesh_.boundary[c / 3][c % 3]];
-      if (known == kNone) known = fans.find(c);
-      if (known != fans.find(c)) touching_.push_back(mesh_.boundary[c / 3][c % 3]);
-    }
+    for (std::size_t e = 0; e < table.size(); ++e)
+      if (table.uses(e).size() != 2) keep_line(out_, table.edges[e]);
+    touches_ = touching_vertices(mesh_.boundary, table, mesh_.points.size(), FansOver::kEdgesOfTwo);
   }
 
   void set_kinds() {
@@ -149,14 +140,15 @@ class TakerApart {
       for (const VertexIndex v : e) vertices[v].kind = Kind::kCurve;
     for (const VertexIndex v : out_.walls.lines.corners) vertices[v].kind = Kind::kFixed;
     for (Vertex& v : vertices) v.off = v.kind != Kind::kInner;
-    for (const VertexIndex v : touching_) vertices[v].kind = Kind::kFixed, vertices[v].off = false;
+    for (VertexIndex v = 0; v < touches_.size(); ++v)
+      if (touches_[v]) vertices[v].kind = Kind::kFixed, vertices[v].off = false;
   }
 
   const TetMesh& mesh_;
   double feature_angle_;
   std::span<const Edge> kinks_;
   TakenApart out_;
-  std::vector<VertexIndex> touching_;
+  std::vector<std::uint8_t> touches_;  ///< per vertex: the boundary touches itself there
 };
 
 }  // namespace
@@ -164,20 +156,6 @@ class TakerApart {
 TakenApart take_apart(const TetMesh& mesh, double feature_angle, std::span<const Edge> kinks) {
   return TakerApart(mesh, feature_angle, kinks).run();
 }
-
-namespace {
-
-/// Lines that stay must not be divided; what they are called is known by their edges then.
-void keep_line(TakenApart& taken, const Edge& edge) {
-  std::vector<Parts::Line>& lines = taken.parts.lines;
-  const auto line = std::lower_bound(lines.begin(), lines.end(), edge,
-                                     [](const Parts::Line& l, const Edge& e) { return l.edge < e; });
-  if (line == lines.end() || line->edge != edge || line->path == Parts::kStays) return;
-  taken.labels.staying[edge] = taken.labels.paths[line->path];
-  line->path = Parts::kStays;
-}
-
-}  // namespace
 
 void hold_sets(TakenApart& taken, const TetMesh& mesh, std::span<const std::uint32_t> sets) {
   if (sets.empty()) return;
@@ -258,6 +236,32 @@ TetMesh put_together(const Parts& parts, const PartLabels& labels, const TetMesh
   inherit(mesh, before, from);
   mesh.source.clear(), mesh.face_layers.clear();  // of the faces that were
   return mesh;
+}
+
+WallsOfParts wall_triangles(const Parts& parts, const std::function<bool(const Triangle&, std::uint32_t)>& left_out) {
+  WallsOfParts walls;
+  std::vector<VertexIndex> number(parts.vertices.size(), kNone);
+  FlatSet<Triangle> seen;
+  for (TetIndex t = 0; t < parts.tets.size(); ++t)
+    for (int i = 0; i < 4; ++i) {
+      const Wall w = parts.wall[t][static_cast<std::size_t>(i)];
+      const bool outer = (w & kOuter) != 0;
+      const std::uint32_t part = (w & ~kOuter) - 1;
+      Triangle f = face_of(parts.tets[t], i);
+      if (w == 0 || left_out(f, part) || (!outer && !seen.insert(face_key(f)))) continue;
+      for (VertexIndex& v : f) {
+        if (number[v] == kNone) {
+          number[v] = static_cast<VertexIndex>(walls.vertex.size());
+          walls.vertex.push_back(v);
+          walls.surface.points.push_back(parts.vertices[v].at);
+        }
+        v = number[v];
+      }
+      walls.surface.triangles.push_back(f);
+      walls.surface.patch.push_back(part);
+      walls.outer.push_back(outer);
+    }
+  return walls;
 }
 
 }  // namespace octafront::adapt

@@ -10,6 +10,7 @@
 #include "base/labels/labels.h"
 
 #include <cstdint>
+#include <functional>
 #include <map>
 #include <span>
 #include <vector>
@@ -45,5 +46,15 @@ void hold_sets(TakenApart& taken, const TetMesh& mesh, std::span<const std::uint
 /// The mesh again, with all that hangs on `before`: vertices that were there in their order, new ones behind. `from`:
 /// of vertices those that they are, of all else an item of the same labels.
 TetMesh put_together(const Parts& parts, const PartLabels& labels, const TetMesh& before, Origins& from);
+
+/// Walls as triangles, each once, and the points that they have.
+struct WallsOfParts {
+  SurfaceMesh surface;              ///< `patch`: the parts
+  std::vector<std::uint8_t> outer;  ///< per triangle
+  std::vector<VertexIndex> vertex;  ///< per point the one of the mesh that it is
+};
+/// Those that are not `left_out`.
+WallsOfParts wall_triangles(const Parts& parts,
+                            const std::function<bool(const Triangle& corners, std::uint32_t part)>& left_out);
 
 }  // namespace octafront::adapt

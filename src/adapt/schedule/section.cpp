@@ -1,7 +1,9 @@
 #include "adapt/schedule/section.h"
 
 #include "base/core/flat_map.h"
+#include "base/core/parallel.h"
 #include "base/mesh/adjacency.h"
+#include "base/mesh/renumber.h"
 
 #include <algorithm>
 #include <array>
@@ -14,23 +16,6 @@ namespace {
 /// Layers of elements around those that may change whose walls are needed: fits of the smooth surface go by three rings
 /// of vertices around each, and what bends beside them by one more.
 constexpr int kLayersOfGround = 4;
-
-/// Marks the tets with a marked vertex, then their vertices.
-void grow_layer(const TetMesh& mesh, std::vector<std::uint8_t>& tets, std::vector<std::uint8_t>& vertices) {
-  for (TetIndex t = 0; t < mesh.tets.size(); ++t)
-    for (const VertexIndex v : mesh.tets[t]) tets[t] |= vertices[v];
-  for (TetIndex t = 0; t < mesh.tets.size(); ++t)
-    if (tets[t])
-      for (const VertexIndex v : mesh.tets[t]) vertices[v] = 1;
-}
-
-std::vector<std::uint8_t> vertices_of(const TetMesh& mesh, std::span<const std::uint8_t> tets) {
-  std::vector<std::uint8_t> marked(mesh.points.size(), 0);
-  for (TetIndex t = 0; t < mesh.tets.size(); ++t)
-    if (tets[t])
-      for (const VertexIndex v : mesh.tets[t]) marked[v] = 1;
-  return marked;
-}
 
 /// The numbers of the faces or edges of a list that lie between vertices which have numbers, counted from `first` on;
 /// of faces those that are some of `faces`.
@@ -259,15 +244,29 @@ class Splicer {
 
 }  // namespace
 
+void mark_vertices(std::span<const Tet> tets, std::span<const std::uint8_t> marked, std::vector<std::uint8_t>& near) {
+  for (TetIndex t = 0; t < tets.size(); ++t)
+    if (marked[t])
+      for (const VertexIndex v : tets[t]) near[v] = 1;
+}
+
+void grow_layer(std::span<const Tet> tets, std::vector<std::uint8_t>& marked, std::vector<std::uint8_t>& near) {
+  parallel_for(tets.size(), [&](std::size_t t) {
+    for (const VertexIndex v : tets[t]) marked[t] |= near[v];
+  });
+  mark_vertices(tets, marked, near);
+}
+
 Section section_of(const TetMesh& whole, std::vector<std::uint8_t>& chosen, int layers) {
-  std::vector<std::uint8_t> near = vertices_of(whole, chosen);
-  for (int k = 0; k < layers; ++k) grow_layer(whole, chosen, near);
+  std::vector<std::uint8_t> near(whole.points.size(), 0);
+  mark_vertices(whole.tets, chosen, near);
+  for (int k = 0; k < layers; ++k) grow_layer(whole.tets, chosen, near);
   std::vector<std::uint8_t> frozen(whole.points.size(), 0);
   for (TetIndex t = 0; t < whole.tets.size(); ++t)
     if (!chosen[t])
       for (const VertexIndex v : whole.tets[t]) frozen[v] = 1;
   std::vector<std::uint8_t> taken = chosen;
-  for (int k = 0; k < kLayersOfGround; ++k) grow_layer(whole, taken, near);
+  for (int k = 0; k < kLayersOfGround; ++k) grow_layer(whole.tets, taken, near);
   Section section;
   Origins& of = section.of;
   std::vector<VertexIndex> number(whole.points.size(), kNone);
@@ -295,19 +294,9 @@ Section section_of(const TetMesh& whole, std::vector<std::uint8_t>& chosen, int 
 
 TetMesh closed_part(const TetMesh& mesh, std::span<const std::uint8_t> loose) {
   TetMesh part;
-  std::vector<VertexIndex> number(mesh.points.size(), kNone);
-  for (TetIndex t = 0; t < mesh.tets.size(); ++t) {
-    if (!loose.empty() && !loose[t]) continue;
-    Tet c = mesh.tets[t];
-    for (VertexIndex& v : c) {
-      if (number[v] == kNone) {
-        number[v] = static_cast<VertexIndex>(part.points.size());
-        part.points.push_back(mesh.points[v]);
-      }
-      v = number[v];
-    }
-    part.tets.push_back(c);
-  }
+  PointsTaken taken(mesh.points);
+  for (TetIndex t = 0; t < mesh.tets.size(); ++t)
+    if (loose.empty() || loose[t]) part.tets.push_back(taken.take(mesh.tets[t], part.points));
   part.boundary = boundary_triangles(part.tets, half_face_neighbors(part.tets, part.points.size()));
   return part;
 }

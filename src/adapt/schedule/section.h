@@ -22,6 +22,11 @@ struct Section {
   std::vector<std::uint8_t> loose;   ///< per tet: it has a vertex that is not frozen
 };
 
+/// Marks the vertices of marked tets; `near` has other marks already.
+void mark_vertices(std::span<const Tet> tets, std::span<const std::uint8_t> marked, std::vector<std::uint8_t>& near);
+/// Marks the tets with a marked vertex, then their vertices.
+void grow_layer(std::span<const Tet> tets, std::vector<std::uint8_t>& marked, std::vector<std::uint8_t>& near);
+
 /// The `chosen` tets and `layers` more of them, by vertices, are those that may change; a vertex is frozen unless all
 /// tets around it may. Requires a valid linear mesh; `chosen` has one entry per tet, and becomes 1 for all that may
 /// change.

@@ -6,7 +6,7 @@
 namespace octafront::adapt {
 
 Sheet::Sheet(std::vector<Vertex> all, std::span<const Triangle> triangles, std::span<const std::uint32_t> part)
-    : vertices(std::move(all)), star_(vertices.size()), lines_(triangles.size()) {
+    : vertices(std::move(all)), line_edges(triangles.size()), star_(vertices.size()) {
   for (std::size_t t = 0; t < triangles.size(); ++t) {
     faces_.push_back({triangles[t], part[t]});
     for (const VertexIndex v : triangles[t]) star_[v].push_back(static_cast<std::uint32_t>(t));
@@ -84,7 +84,7 @@ std::optional<std::string> Sheet::first_inconsistency() const {
         return "triangle " + std::to_string(t) + " is not around its corner " + std::to_string(v);
   }
   std::optional<std::string> wrong;
-  lines_.for_each([&](const Edge& e, std::uint32_t) {
+  line_edges.for_each([&](const Edge& e, std::uint32_t) {
     if (!wrong && around(e[0], e[1]).empty())
       wrong = "the line from " + std::to_string(e[0]) + " to " + std::to_string(e[1]) + " has no triangle";
   });

@@ -30,6 +30,7 @@ class Sheet {
   Sheet(std::vector<Vertex> vertices, std::span<const Triangle> triangles, std::span<const std::uint32_t> part);
 
   std::vector<Vertex> vertices;
+  LineEdges line_edges;
 
   std::uint32_t slots() const { return static_cast<std::uint32_t>(faces_.size()); }
   bool alive(std::uint32_t t) const { return faces_[t].corners[0] != kNone; }
@@ -49,9 +50,7 @@ class Sheet {
     return kNone;
   }
 
-  const std::uint32_t* line(VertexIndex a, VertexIndex b) const { return lines_.find(sorted_edge(a, b)); }
-  void set_line(VertexIndex a, VertexIndex b, std::uint32_t path) { lines_.find_or_add(sorted_edge(a, b)) = path; }
-  void drop_line(VertexIndex a, VertexIndex b) { lines_.erase(sorted_edge(a, b)); }
+  const std::uint32_t* line(VertexIndex a, VertexIndex b) const { return line_edges.find(a, b); }
 
   double edge_length(VertexIndex a, VertexIndex b) const { return length_between(vertices[a], vertices[b]); }
   static double length_between(const Vertex& a, const Vertex& b) {
@@ -75,7 +74,6 @@ class Sheet {
   std::vector<Face> faces_;
   std::vector<std::uint32_t> free_;
   std::vector<std::vector<std::uint32_t>> star_;
-  FlatMap<Edge, std::uint32_t> lines_;
 };
 
 }  // namespace octafront::adapt

@@ -21,7 +21,7 @@ class SheetPiece {
     for (const Face& f : before_)
       for (std::size_t i = 0; i < 3; ++i) {
         const VertexIndex a = f.corners[i], b = f.corners[(i + 1) % 3];
-        if (const std::uint32_t* path = whole.line(number_[a], number_[b])) piece_.set_line(a, b, *path);
+        if (const std::uint32_t* path = whole.line(number_[a], number_[b])) piece_.line_edges.set(a, b, *path);
       }
     for (VertexIndex v = 0; v < number_.size(); ++v) {
       Vertex& vertex = piece_.vertices[v];
@@ -30,8 +30,8 @@ class SheetPiece {
     }
   }
 
-  SheetCounts work(const SheetGuide& guide) {
-    SheetCounts now;
+  Counts work(const SheetGuide& guide) {
+    Counts now;
     now.split = split_long_edges(piece_, guide);
     now.swap = swap_edges(piece_, guide);
     now.collapse = collapse_short_edges(piece_, guide);
@@ -110,13 +110,13 @@ class SheetPiece {
       for (std::size_t i = 0; i < 3 && !is_as_before(t); ++i) {
         const auto [a, b] = in_whole(before_[t].corners, i);
         const VertexIndex u = before_[t].corners[i], v = before_[t].corners[(i + 1) % 3];
-        if (whole.line(a, b) && !piece_.line(u, v)) whole.drop_line(a, b);
+        if (whole.line(a, b) && !piece_.line(u, v)) whole.line_edges.drop(a, b);
       }
     for (std::uint32_t t = 0; t < piece_.slots(); ++t)
       for (std::size_t i = 0; i < 3 && piece_.alive(t) && !is_as_before(t); ++i) {
         const Triangle& c = piece_.corners(t);
         const auto [a, b] = in_whole(c, i);
-        if (const std::uint32_t* path = piece_.line(c[i], c[(i + 1) % 3])) whole.set_line(a, b, *path);
+        if (const std::uint32_t* path = piece_.line(c[i], c[(i + 1) % 3])) whole.line_edges.set(a, b, *path);
       }
   }
 
@@ -147,7 +147,7 @@ class SheetPiece {
 
 }  // namespace
 
-SheetCounts cycle_in_cells(Sheet& sheet, const SheetGuide& guide, int stage) {
+Counts cycle_in_cells(Sheet& sheet, const SheetGuide& guide, int stage) {
   std::vector<Vec3> points;
   Box3 box;
   for (const Vertex& v : sheet.vertices) points.push_back(v.at), box.add(v.at);
@@ -159,7 +159,7 @@ SheetCounts cycle_in_cells(Sheet& sheet, const SheetGuide& guide, int stage) {
                                              [&](std::uint32_t t) { return cells.holding(sheet.corners(t)); });
   for (Vertex& v : sheet.vertices) v.touched = false;
   std::vector<std::optional<SheetPiece>> pieces(cells.count);
-  std::vector<SheetCounts> counts(cells.count);
+  std::vector<Counts> counts(cells.count);
   PerThread<std::vector<VertexIndex>> scratch;
   parallel_for(
       cells.count,
@@ -172,7 +172,7 @@ SheetCounts cycle_in_cells(Sheet& sheet, const SheetGuide& guide, int stage) {
         counts[c] = pieces[c]->work(guide);
       },
       Split::kSingly);
-  SheetCounts sum;
+  Counts sum;
   for (std::size_t c = 0; c < pieces.size(); ++c) {
     if (pieces[c]) pieces[c]->put_back(sheet);
     pieces[c].reset();

@@ -76,27 +76,12 @@ class SheetPass {
     return path ? guide_.ground.on_line(p, *path, reach) : guide_.ground.on_surface(p, part, outer_, normal, reach);
   }
 
-  /// Whether triangles of each part may take the place of others of it.
-  bool keeps_true(std::span<const Sheet::Face> before, std::span<const Sheet::Face> after) const {
-    std::vector<std::uint32_t> parts;
-    for (const Sheet::Face& f : after) parts.push_back(f.part);
-    std::sort(parts.begin(), parts.end());
-    parts.erase(std::unique(parts.begin(), parts.end()), parts.end());
-    for (const std::uint32_t part : parts) {
-      std::vector<TriangleCorners> had, has;
-      for (const Sheet::Face& f : before)
-        if (f.part == part) had.push_back(sheet_.places(f.corners));
-      for (const Sheet::Face& f : after)
-        if (f.part == part) has.push_back(sheet_.places(f.corners));
-      if (!keeps_walls_true(guide_, had, has, wall_of(part))) return false;
-    }
-    return true;
-  }
-
-  std::vector<Sheet::Face> faces_of(std::span<const std::uint32_t> triangles) const {
-    std::vector<Sheet::Face> faces;
-    for (const std::uint32_t t : triangles) faces.push_back({sheet_.corners(t), sheet_.part(t)});
-    return faces;
+  /// Whether these triangles may take the place of others; no part vanishes.
+  bool keeps_true(std::span<const std::uint32_t> old, std::span<const Sheet::Face> fresh) const {
+    std::vector<WallTriangle> before, after;
+    for (const std::uint32_t t : old) before.push_back({sheet_.places(sheet_.corners(t)), wall_of(sheet_.part(t))});
+    for (const Sheet::Face& f : fresh) after.push_back({sheet_.places(f.corners), wall_of(f.part)});
+    return keep_walls_true(guide_, before, after);
   }
 
   Sheet& sheet_;
@@ -138,7 +123,7 @@ class SheetSplitter : SheetPass {
     }
     const Vec3 to =
         home(straight, path, sheet_.part(old[0]), normal, kReachOfSheet * distance(p, q)).value_or(straight);
-    Vertex made = between(sheet_.vertices[a], sheet_.vertices[b]);
+    Vertex made = between(sheet_.vertices[a], sheet_.vertices[b], 0.5);
     made.kind = path ? Kind::kCurve : Kind::kSurface;
     for (const double share : {1.0, 0.5, 0.0}) {
       if (share != 0 && to == straight) continue;
@@ -150,17 +135,6 @@ class SheetSplitter : SheetPass {
       return true;
     }
     return false;
-  }
-
-  static Vertex between(const Vertex& a, const Vertex& b) {
-    Vertex made;
-    made.hint = a.hint;
-    made.exact = a.exact && b.exact;
-    if (!made.exact) {
-      made.metric = exp_of(0.5 * log_of(a.metric) + 0.5 * log_of(b.metric));
-      made.density = density_of(made.metric);
-    }
-    return made;
   }
 
   bool is_fair(std::span<const std::uint32_t> old, VertexIndex a, VertexIndex b, const Vertex& made,
@@ -195,10 +169,7 @@ class SheetSplitter : SheetPass {
         std::replace(c.begin(), c.end(), gone, v);
         fresh.push_back({c, sheet_.part(t)});
       }
-    if (path) {
-      sheet_.drop_line(a, b);
-      sheet_.set_line(a, v, *path), sheet_.set_line(v, b, *path);
-    }
+    if (path) sheet_.line_edges.divide(a, b, v, *path);
     sheet_.replace(old, fresh);
   }
 };
@@ -270,28 +241,10 @@ class SheetCollapser : SheetPass {
       for (const VertexIndex v : f.corners)
         if (v != w && sheet_.edge_length(v, w) > kLongest) return false;
     }
-    const std::vector<Sheet::Face> before = faces_of(old);
-    if (!keeps_manifold(u, w, ring, fresh) || !keeps_parts(before, fresh) || !keeps_true(before, fresh)) return false;
-    if (sheet_.vertices[u].kind == Kind::kCurve) move_line(u, w);
+    if (!keeps_manifold(u, w, ring, fresh) || !keeps_true(old, fresh)) return false;
+    if (sheet_.vertices[u].kind == Kind::kCurve) sheet_.line_edges.shorten(u, w, sheet_.neighbours(u));
     sheet_.replace(old, fresh);
     return true;
-  }
-
-  /// No part vanishes here.
-  static bool keeps_parts(std::span<const Sheet::Face> before, std::span<const Sheet::Face> after) {
-    return std::all_of(before.begin(), before.end(), [&](const Sheet::Face& f) {
-      return std::any_of(after.begin(), after.end(), [&](const Sheet::Face& g) { return g.part == f.part; });
-    });
-  }
-
-  /// The line that led through u to w leads to w.
-  void move_line(VertexIndex u, VertexIndex w) {
-    const std::uint32_t path = *sheet_.line(u, w);
-    for (const VertexIndex v : sheet_.neighbours(u)) {
-      if (!sheet_.line(u, v)) continue;
-      sheet_.drop_line(u, v);
-      if (v != w) sheet_.set_line(v, w, path);
-    }
   }
 };
 
@@ -331,7 +284,7 @@ class SheetSwapper : SheetPass {
     for (const Sheet::Face& f : fresh)
       for (const Triangle& t : {first, second})
         if (!turns_little(sheet_.places(t), sheet_.places(f.corners))) return false;
-    if (!keeps_true(faces_of(old), fresh)) return false;
+    if (!keeps_true(old, fresh)) return false;
     sheet_.replace(old, fresh);
     return true;
   }
@@ -432,7 +385,6 @@ class SheetSmoother : SheetPass {
     const Vertex from = sheet_.vertices[v];
     std::vector<TriangleCorners> before;
     for (const Triangle& t : s.star) before.push_back(sheet_.places(t));
-    const std::vector<Sheet::Face> had = truly ? faces_of(sheet_.star(v)) : std::vector<Sheet::Face>{};
     sheet_.vertices[v].at = at;
     guide_.ask(sheet_.vertices[v]);
     double lack = 0;

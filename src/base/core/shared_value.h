@@ -17,7 +17,6 @@ class SharedValue {
   void store(T value) const { __atomic_store(value_, &value, __ATOMIC_RELAXED); }
   /// What it was.
   T exchange(T value) const { return __atomic_exchange_n(value_, value, __ATOMIC_RELAXED); }
-  void add_bits(T bits) const { __atomic_fetch_or(value_, bits, __ATOMIC_RELAXED); }
   void lower_to(T value) const {
     T known = load();
     while (value < known &&

@@ -223,28 +223,4 @@ SegmentHit segment_triangle_hit(Vec3 p, Vec3 q, const TriangleCorners& t) {
   return hit;
 }
 
-bool segment_triangle_conflict(const std::array<Vec3, 2>& s, const Edge& s_ids, const TriangleCorners& t,
-                               const Triangle& t_ids) {
-  int shared = 0, own = 0, corner = 0;
-  for (int i = 0; i < 2; ++i) {
-    for (int j = 0; j < 3; ++j) {
-      if (s_ids[i] != t_ids[j]) continue;
-      ++shared;
-      own = i;
-      corner = j;
-    }
-  }
-  if (shared == 0) {
-    const int side0 = orient3d(t[0], t[1], t[2], s[0]), side1 = orient3d(t[0], t[1], t[2], s[1]);
-    return segment_meets(s[0], side0, s[1], side1, t);
-  }
-  if (shared == 2) return false;
-  // From a shared corner a segment meets more of the triangle only if it starts into the angle there.
-  const Vec3 far = s[1 - own];
-  if (orient3d(t[0], t[1], t[2], far) != 0) return false;
-  const Projection plane = projection_of(t);
-  return plane.orient(t[corner], t[next(corner)], far) * plane.turn >= 0 &&
-         plane.orient(t[prev(corner)], t[corner], far) * plane.turn >= 0;
-}
-
 }  // namespace octafront

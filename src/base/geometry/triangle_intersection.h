@@ -44,8 +44,4 @@ struct SegmentHit {
 /// degenerate.
 SegmentHit segment_triangle_hit(Vec3 p, Vec3 q, const TriangleCorners& t);
 
-/// True if a segment and a triangle meet in anything but the simplex that they share by vertex ids.
-bool segment_triangle_conflict(const std::array<Vec3, 2>& s, const Edge& s_ids, const TriangleCorners& t,
-                               const Triangle& t_ids);
-
 }  // namespace octafront

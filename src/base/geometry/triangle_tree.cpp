@@ -320,4 +320,16 @@ int TriangleTree::winding_number(Vec3 p) const {
   return crossings(p).winding;
 }
 
+TriangleTree tree_of_points(std::span<const Vec3> points, std::span<const VertexIndex> list) {
+  std::vector<Triangle> flat;
+  for (const VertexIndex v : list) flat.push_back({v, v, v});
+  return {points, flat};
+}
+
+TriangleTree tree_of_segments(std::span<const Vec3> points, std::span<const Edge> segments) {
+  std::vector<Triangle> flat;
+  for (const auto& [a, b] : segments) flat.push_back({a, b, b});
+  return {points, flat};
+}
+
 }  // namespace octafront

@@ -153,4 +153,8 @@ class TriangleTree {
   std::vector<std::uint32_t> item_of_triangle_;
 };
 
+/// Over points, or segments: as triangles with corners that are one, numbered as the list.
+TriangleTree tree_of_points(std::span<const Vec3> points, std::span<const VertexIndex> list);
+TriangleTree tree_of_segments(std::span<const Vec3> points, std::span<const Edge> segments);
+
 }  // namespace octafront

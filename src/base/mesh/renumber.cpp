@@ -17,16 +17,6 @@ void mark_used(const Rows& rows, std::vector<VertexIndex>& number) {
 
 }  // namespace
 
-void keep_numbered(std::vector<Vec3>& points, std::vector<VertexIndex>& number) {
-  VertexIndex next = 0;
-  for (std::size_t v = 0; v < points.size(); ++v) {
-    if (number[v] == kNone) continue;
-    points[next] = points[v];
-    number[v] = next++;
-  }
-  points.resize(next);
-}
-
 void renumber_named_nodes(TetMesh& mesh, const std::vector<VertexIndex>& number) {
   for (WideCell& cell : mesh.wide_cells)
     for (VertexIndex& v : cell.nodes)
@@ -66,8 +56,9 @@ void drop_unused_points(TetMesh& mesh, std::size_t kept) {
   renumber_vertices(mesh, number);
 }
 
-void drop_unused_points(std::vector<Vec3>& points, std::vector<Triangle>& triangles) {
+void drop_unused_points(std::vector<Vec3>& points, std::vector<Triangle>& triangles, std::size_t kept) {
   std::vector<VertexIndex> number(points.size(), kNone);
+  std::fill_n(number.begin(), kept, 0);
   mark_used(triangles, number);
   keep_numbered(points, number);
   renumber(triangles, number);

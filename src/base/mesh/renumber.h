@@ -6,12 +6,23 @@
 #include "base/core/parallel.h"
 
 #include <cstddef>
+#include <span>
 #include <vector>
 
 namespace octafront {
 
-/// Keeps the points v with number[v] != kNone, in their order. On return number[v] is where point v went.
-void keep_numbered(std::vector<Vec3>& points, std::vector<VertexIndex>& number);
+/// Keeps the points v, or what there is of each, with number[v] != kNone, in their order. On return number[v] is where
+/// point v went.
+template <class Point>
+void keep_numbered(std::vector<Point>& points, std::vector<VertexIndex>& number) {
+  VertexIndex next = 0;
+  for (std::size_t v = 0; v < points.size(); ++v) {
+    if (number[v] == kNone) continue;
+    points[next] = points[v];
+    number[v] = next++;
+  }
+  points.resize(next);
+}
 
 /// Replaces each vertex of the rows (triangles, tets, edges) by its new number.
 template <class Rows>
@@ -20,6 +31,26 @@ void renumber(Rows& rows, const std::vector<VertexIndex>& number) {
     for (VertexIndex& v : rows[i]) v = number[v];
   });
 }
+
+/// Points taken out of others, numbered as they come.
+class PointsTaken {
+ public:
+  explicit PointsTaken(std::span<const Vec3> from) : from_(from), number_(from.size(), kNone) {}
+
+  /// A row of theirs (triangle, tet) by its numbers in `to`, which gets the points that it has not yet.
+  template <class Row>
+  Row take(Row row, std::vector<Vec3>& to) {
+    for (VertexIndex& v : row) {
+      if (number_[v] == kNone) number_[v] = static_cast<VertexIndex>(to.size()), to.push_back(from_[v]);
+      v = number_[v];
+    }
+    return row;
+  }
+
+ private:
+  std::span<const Vec3> from_;
+  std::vector<VertexIndex> number_;
+};
 
 /// Replaces the nodes that wedges, pyramids, quadrilaterals, doubled faces and pairs name by themselves. Doubled faces
 /// and pairs with a node whose number is kNone go.
@@ -30,7 +61,7 @@ void renumber_vertices(TetMesh& mesh, const std::vector<VertexIndex>& number);
 
 /// Points that no tetrahedron uses go; the first `kept` stay where they are, used or not.
 void drop_unused_points(TetMesh& mesh, std::size_t kept = 0);
-/// Points that no triangle uses go.
-void drop_unused_points(std::vector<Vec3>& points, std::vector<Triangle>& triangles);
+/// The same of points that no triangle uses.
+void drop_unused_points(std::vector<Vec3>& points, std::vector<Triangle>& triangles, std::size_t kept = 0);
 
 }  // namespace octafront

@@ -1,5 +1,7 @@
 #include "base/mesh/surface_topology.h"
 
+#include "base/core/disjoint_sets.h"
+
 #include <algorithm>
 
 namespace octafront {
@@ -59,6 +61,37 @@ bool is_closed_manifold(std::span<const Triangle> triangles, std::size_t vertex_
   const std::vector<HalfEdge> twin = half_edge_twins(triangles, vertex_count);
   if (std::find(twin.begin(), twin.end(), kNone) != twin.end()) return false;
   return pinched_vertices(triangles, twin, vertex_count).empty();
+}
+
+bool is_turned_one_way(std::span<const Triangle> triangles, const EdgeTable& edges, bool closed) {
+  for (std::size_t e = 0; e < edges.size(); ++e) {
+    const auto uses = edges.uses(e);
+    if (uses.size() > 2 || (closed && uses.size() != 2)) return false;
+    if (uses.size() == 2 && start_of(triangles, uses[0]) == start_of(triangles, uses[1])) return false;
+  }
+  return true;
+}
+
+std::vector<std::uint8_t> touching_vertices(std::span<const Triangle> triangles, const EdgeTable& edges,
+                                            std::size_t vertex_count, FansOver over) {
+  std::vector<std::uint8_t> touches(vertex_count, 0);
+  DisjointSets fans(3 * triangles.size());  // of corners
+  const auto corner_at = [&](HalfEdge h, VertexIndex v) { return start_of(triangles, h) == v ? h : next_of(h); };
+  for (std::size_t e = 0; e < edges.size(); ++e) {
+    const auto uses = edges.uses(e);
+    const bool joins = over == FansOver::kAllEdges || uses.size() == 2;
+    for (const VertexIndex v : edges.edges[e]) {
+      touches[v] |= !joins;
+      for (std::size_t k = 1; joins && k < uses.size(); ++k) fans.join(corner_at(uses[0], v), corner_at(uses[k], v));
+    }
+  }
+  std::vector<std::uint32_t> fan_at(vertex_count, kNone);
+  for (HalfEdge h = 0; h < 3 * triangles.size(); ++h) {
+    const VertexIndex v = start_of(triangles, h);
+    if (fan_at[v] == kNone) fan_at[v] = fans.find(h);
+    touches[v] |= fan_at[v] != fans.find(h);
+  }
+  return touches;
 }
 
 }  // namespace octafront

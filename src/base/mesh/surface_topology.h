@@ -5,6 +5,7 @@
 #include "base/mesh/edge_table.h"
 
 #include <cstddef>
+#include <cstdint>
 #include <span>
 #include <vector>
 
@@ -23,5 +24,16 @@ bool is_closed_manifold(std::span<const Triangle> triangles, std::size_t vertex_
 /// twins.
 std::vector<VertexIndex> pinched_vertices(std::span<const Triangle> triangles, std::span<const HalfEdge> twin,
                                           std::size_t vertex_count);
+
+/// Whether triangles of all edges with two run through them in opposite directions, and no edge has more. `closed`: and
+/// none fewer.
+bool is_turned_one_way(std::span<const Triangle> triangles, const EdgeTable& edges, bool closed);
+
+/// Across which edges triangles hang together around a vertex.
+enum class FansOver { kEdgesOfTwo, kAllEdges };
+/// Per vertex 1 if its triangles form several fans there, or if one of its edges joins none of them. Their number at an
+/// edge and the way they are turned do not matter.
+std::vector<std::uint8_t> touching_vertices(std::span<const Triangle> triangles, const EdgeTable& edges,
+                                            std::size_t vertex_count, FansOver over);
 
 }  // namespace octafront

@@ -170,6 +170,21 @@ class TetComplex {
     out.closed = false;
     return Turn::kOpen;
   }
+  /// The same both ways: of an open ring what lies on the other side of t goes before it.
+  template <class Accept>
+  Turn whole_ring(TetIndex t, int i, int j, EdgeRing& out, const Accept& accept) const {
+    if (const Turn turn = turn_around(t, i, j, out, accept); turn != Turn::kOpen) return turn;
+    VertexIndex from = out.ring[0], to = out.ring[1];
+    for (;;) {
+      const HalfFace o = across[opposite(t, to)];
+      if (is_outside(o)) return Turn::kOpen;
+      t = o / 4;
+      if (!accept(t)) return Turn::kGivenUp;
+      to = std::exchange(from, apex(o));
+      out.tets.insert(out.tets.begin(), t);
+      out.ring.insert(out.ring.begin(), from);
+    }
+  }
   /// The ring of the edge (p, q) of t, from t on. False if the edge lies on the boundary or has more than `most` tets.
   bool closed_ring(TetIndex t, VertexIndex p, VertexIndex q, EdgeRing& out, std::size_t most = kNone) const {
     return turn_around(t, corner_of(t, p), corner_of(t, q), out, [&](TetIndex) { return out.tets.size() < most; }) ==

@@ -4,6 +4,7 @@
 #include "base/core/disjoint_sets.h"
 #include "base/core/wording.h"
 #include "base/mesh/adjacency.h"
+#include "base/mesh/quadratic_nodes.h"
 #include "base/places/places.h"
 
 #include <algorithm>
@@ -551,12 +552,8 @@ class Splitting {
   }
 
   static VertexIndex mid_node(const TetMesh& mesh, TetIndex t, VertexIndex a, VertexIndex b) {
-    for (std::size_t e = 0; e < 6; ++e) {
-      const VertexIndex p = mesh.tets[t][static_cast<std::size_t>(kTetEdges[e][0])],
-                        q = mesh.tets[t][static_cast<std::size_t>(kTetEdges[e][1])];
-      if ((p == a && q == b) || (p == b && q == a)) return mesh.mid_nodes[t][e];
-    }
-    return kNone;
+    const std::size_t e = edge_between(mesh.tets[t], a, b);
+    return e < 6 ? mesh.mid_nodes[t][e] : kNone;
   }
 
   void move_sets(const TetMesh& before, const std::vector<std::vector<std::uint32_t>>& edges) {

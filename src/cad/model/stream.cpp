@@ -89,59 +89,52 @@ class Reader {
   std::string_view bytes_;
 };
 
+template <class T, class Record>
+concept Of = std::is_same_v<std::remove_const_t<T>, Record>;
+
 // One list of members for both ways.
-template <class Ar, class T>
-requires std::is_same_v<std::remove_const_t<T>, Knots>
+template <class Ar, Of<Knots> T>
 void fields(Ar& ar, T& it) {
   ar(it.degree), ar(it.knots);
 }
-template <class Ar, class T>
-requires std::is_same_v<std::remove_const_t<T>, CurveRecord>
+template <class Ar, Of<CurveRecord> T>
 void fields(Ar& ar, T& it) {
   ar(it.kind), ar(it.frame), ar(it.radius), ar(it.minor), ar(it.knots), ar(it.poles), ar(it.weights);
 }
-template <class Ar, class T>
-requires std::is_same_v<std::remove_const_t<T>, SurfaceRecord>
+template <class Ar, Of<SurfaceRecord> T>
 void fields(Ar& ar, T& it) {
   ar(it.kind), ar(it.frame), ar(it.radius), ar(it.minor), ar(it.u_knots), ar(it.v_knots), ar(it.poles);
   ar(it.weights), ar(it.u_period), ar(it.v_period);
 }
-template <class Ar, class T>
-requires std::is_same_v<std::remove_const_t<T>, Labels>
+template <class Ar, Of<Labels> T>
 void fields(Ar& ar, T& it) {
   ar(it.name), ar(it.layer), ar(it.colour);
 }
-template <class Ar, class T>
-requires std::is_same_v<std::remove_const_t<T>, Face>
+template <class Ar, Of<Face> T>
 void fields(Ar& ar, T& it) {
   ar(it.labels), ar(it.surface), ar(it.is_turned), ar(it.low), ar(it.high), ar(it.sides), ar(it.piece), ar(it.area);
   ar(it.tolerance), ar(it.triangles);
 }
-template <class Ar, class T>
-requires std::is_same_v<std::remove_const_t<T>, CadEdge>
+template <class Ar, Of<CadEdge> T>
 void fields(Ar& ar, T& it) {
   ar(it.curve), ar(it.vertices), ar(it.parameters), ar(it.faces), ar(it.length), ar(it.tolerance), ar(it.is_seam);
   ar(it.is_smooth);
 }
-template <class Ar, class T>
-requires std::is_same_v<std::remove_const_t<T>, Solid>
+template <class Ar, Of<Solid> T>
 void fields(Ar& ar, T& it) {
   ar(it.labels), ar(it.product), ar(it.material), ar(it.volume), ar(it.area), ar(it.closed);
 }
-template <class Ar, class T>
-requires std::is_same_v<std::remove_const_t<T>, CadModel>
+template <class Ar, Of<CadModel> T>
 void fields(Ar& ar, T& it) {
   ar(it.points), ar(it.triangles), ar(it.face_of), ar(it.corners), ar(it.faces), ar(it.edges), ar(it.solids);
   ar(it.vertices), ar(it.tolerance), ar(it.shared), ar(it.fused), ar(it.format), ar(it.unit);
   ar(it.to_millimetres), ar(it.per_millimetre), ar(it.notes);
 }
-template <class Ar, class T>
-requires std::is_same_v<std::remove_const_t<T>, Where>
+template <class Ar, Of<Where> T>
 void fields(Ar& ar, T& it) {
   ar(it.stage), ar(it.what), ar(it.done), ar(it.lo), ar(it.hi);
 }
-template <class Ar, class T>
-requires std::is_same_v<std::remove_const_t<T>, Opened>
+template <class Ar, Of<Opened> T>
 void fields(Ar& ar, T& it) {
   ar(it.lo), ar(it.hi), ar(it.model);
 }

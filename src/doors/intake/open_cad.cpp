@@ -4,6 +4,7 @@
 #include <octafront/units.h>
 
 #include "base/core/wording.h"
+#include "base/mesh/renumber.h"
 #include "cad/reader/cad_reader.h"
 #include "cad/shapes/collapse_tiny.h"
 #include "cad/shapes/face_groups.h"
@@ -313,22 +314,14 @@ std::vector<Body> bodies_of(const Triangulated& made) {
   std::vector<Body> bodies;
   for (std::uint32_t s = 0; s < names.size(); ++s) {
     Body body{names[s], {{}, {}, {}, made.groups.names, {}}};
-    std::vector<VertexIndex> number(made.model.points.size(), kNone);
+    PointsTaken taken(made.model.points);
     for (std::size_t t = 0; t < made.model.triangles.size(); ++t) {
       const std::uint32_t f = made.model.face_of[t];
       const auto& [front, behind] = made.model.faces[f].sides;
       if (front != s && behind != s) continue;
       auto [a, b, c] = made.model.triangles[t];
       if (front == s) std::swap(b, c);
-      Triangle triangle{a, b, c};
-      for (VertexIndex& v : triangle) {
-        if (number[v] == kNone) {
-          number[v] = static_cast<VertexIndex>(body.surface.points.size());
-          body.surface.points.push_back(made.model.points[v]);
-        }
-        v = number[v];
-      }
-      body.surface.triangles.push_back(triangle);
+      body.surface.triangles.push_back(taken.take(Triangle{a, b, c}, body.surface.points));
       body.surface.patch.push_back(made.groups.group_of[f]);
     }
     bodies.push_back(std::move(body));

@@ -67,9 +67,7 @@ class Snapper {
 
   /// Boundary edges with ends on different sides of a curve cross it: one end goes onto it.
   void snap_curves(const RunContext& context) {
-    std::vector<Triangle> segments;
-    for (const auto& [a, b] : features_.edges) segments.push_back({a, b, b});
-    const TriangleTree curves(surface_.points, segments);
+    const TriangleTree curves = tree_of_segments(surface_.points, features_.edges);
     struct Goal {
       double squared_distance;
       VertexIndex vertex;

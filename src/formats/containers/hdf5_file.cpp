@@ -176,30 +176,9 @@ template void Hdf5Writer::rows(const std::string&, const std::vector<std::uint64
 template void Hdf5Writer::rows(const std::string&, const std::vector<std::uint64_t>&, Stretch,
                                const Fill<std::int64_t>&);
 template void Hdf5Writer::rows(const std::string&, const std::vector<std::uint64_t>&, Stretch,
+                               const Fill<std::int8_t>&);
+template void Hdf5Writer::rows(const std::string&, const std::vector<std::uint64_t>&, Stretch,
                                const Fill<std::uint8_t>&);
-
-void Hdf5Writer::dataset(const std::string& path, const std::vector<std::uint64_t>& shape, const Fill<double>& fill) {
-  rows(path, shape, {0, shape[0]}, fill);
-}
-void Hdf5Writer::dataset(const std::string& path, const std::vector<std::uint64_t>& shape,
-                         const Fill<std::int32_t>& fill) {
-  rows(path, shape, {0, shape[0]}, fill);
-}
-void Hdf5Writer::dataset(const std::string& path, const std::vector<std::uint64_t>& shape,
-                         const Fill<std::int64_t>& fill) {
-  rows(path, shape, {0, shape[0]}, fill);
-}
-void Hdf5Writer::dataset(const std::string& path, const std::vector<std::uint64_t>& shape, const Fill<float>& fill) {
-  rows(path, shape, {0, shape[0]}, fill);
-}
-void Hdf5Writer::dataset(const std::string& path, const std::vector<std::uint64_t>& shape,
-                         const Fill<std::int8_t>& fill) {
-  rows(path, shape, {0, shape[0]}, fill);
-}
-void Hdf5Writer::dataset(const std::string& path, const std::vector<std::uint64_t>& shape,
-                         const Fill<std::uint8_t>& fill) {
-  rows(path, shape, {0, shape[0]}, fill);
-}
 
 void Hdf5Writer::texts(const std::string& path, const std::vector<std::string>& rows, std::size_t length) {
   std::string all;

@@ -37,12 +37,10 @@ class Hdf5Writer {
   void attribute(const std::string& of, const std::string& name, std::string_view text, std::size_t size = 0);
   void attribute(const std::string& of, const std::string& name, const std::vector<std::int32_t>& values);
 
-  void dataset(const std::string& path, const std::vector<std::uint64_t>& shape, const Fill<double>& fill);
-  void dataset(const std::string& path, const std::vector<std::uint64_t>& shape, const Fill<std::int32_t>& fill);
-  void dataset(const std::string& path, const std::vector<std::uint64_t>& shape, const Fill<std::int64_t>& fill);
-  void dataset(const std::string& path, const std::vector<std::uint64_t>& shape, const Fill<float>& fill);
-  void dataset(const std::string& path, const std::vector<std::uint64_t>& shape, const Fill<std::int8_t>& fill);
-  void dataset(const std::string& path, const std::vector<std::uint64_t>& shape, const Fill<std::uint8_t>& fill);
+  template <class T>
+  void dataset(const std::string& path, const std::vector<std::uint64_t>& shape, const Fill<T>& fill) {
+    rows(path, shape, {0, shape[0]}, fill);
+  }
   /// A stretch of rows of a dataset of this shape, which is made at the first one: whoever has only a piece at a time
   /// need not know the others. `first` counts from the beginning of the stretch.
   struct Stretch {

@@ -1,5 +1,6 @@
 #include "formats/parts/mixed_cells.h"
 
+#include "base/mesh/quadratic_nodes.h"
 #include "base/mesh/renumber.h"
 
 #include <algorithm>
@@ -11,11 +12,7 @@ namespace {
 /// The mid-side node of an edge of a wide cell.
 VertexIndex mid_node(const TetMesh& mesh, const WideCell& cell, VertexIndex a, VertexIndex b) {
   for (TetIndex t = cell.first; t < cell.first + cell.tet_count; ++t)
-    for (std::size_t e = 0; e < 6; ++e) {
-      const VertexIndex p = mesh.tets[t][static_cast<std::size_t>(kTetEdges[e][0])],
-                        q = mesh.tets[t][static_cast<std::size_t>(kTetEdges[e][1])];
-      if ((p == a && q == b) || (p == b && q == a)) return mesh.mid_nodes[t][e];
-    }
+    if (const std::size_t e = edge_between(mesh.tets[t], a, b); e < 6) return mesh.mid_nodes[t][e];
   return kNone;
 }
 

@@ -59,8 +59,6 @@ class Pieces {
   std::span<const TetIndex> own_tets(std::uint32_t number) const { return own_[number]; }
   /// Those of other parts that share a corner with them, ascending; of a wedge or pyramid all.
   std::vector<TetIndex> ghosts_of(std::uint32_t number);
-  /// Per edge of a curve the element that it belongs to.
-  TetIndex tet_of_edge(std::size_t e) const { return edge_tet_[e]; }
 
  private:
   /// The element that a face or edge belongs to, and its number.

@@ -30,6 +30,15 @@ void check_claim(const Input& input, const char* at, const Claim& claim, std::ui
                                      count, what, bytes_left, room));
 }
 
+std::uint64_t read_count(Scanner& scan, const Input& input, std::string_view what, std::uint64_t least_bytes) {
+  scan.at_end();
+  const char* const at = scan.position();
+  const std::int64_t n = scan.integer(fmt::format("the number of {}", what));
+  if (n < 0) scan.fail(fmt::format("{} {}; the file is damaged", n, what));
+  check_claim(input, at, {static_cast<std::uint64_t>(n), least_bytes, what}, scan.bytes_left());
+  return static_cast<std::uint64_t>(n);
+}
+
 void SurfaceBuilder::reserve_faces(std::size_t count) {
   triangles_.reserve(count);
   face_of_triangle_.reserve(count);

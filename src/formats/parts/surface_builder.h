@@ -3,6 +3,7 @@
 #include <octafront/io.h>
 
 #include "formats/containers/input.h"
+#include "formats/containers/scanner.h"
 
 #include <cstdint>
 #include <span>
@@ -65,5 +66,7 @@ struct Claim {
 /// Throws InputError unless what is claimed fits into the `bytes_left` behind `at`: a header is believed only as far as
 /// the file can hold it. Also if the count exceeds 32-bit indices.
 void check_claim(const Input& input, const char* at, const Claim& claim, std::uint64_t bytes_left);
+/// Reads the number of what follows, of which each takes `least_bytes` or more.
+std::uint64_t read_count(Scanner& scan, const Input& input, std::string_view what, std::uint64_t least_bytes);
 
 }  // namespace octafront::io

@@ -1,5 +1,6 @@
 #include "formats/parts/wide_reading.h"
 
+#include "base/mesh/quadratic_nodes.h"
 #include "formats/parts/wide_orders.h"
 
 #include <algorithm>
@@ -104,21 +105,13 @@ class MidNodes {
 
   VertexIndex operator()(VertexIndex a, VertexIndex b) const {
     for (TetIndex t = cell_.first; t < cell_.first + cell_.tet_count; ++t)
-      for (std::size_t e = 0; e < 6; ++e) {
-        const VertexIndex p = raw_.tets[t][static_cast<std::size_t>(kTetEdges[e][0])],
-                          q = raw_.tets[t][static_cast<std::size_t>(kTetEdges[e][1])];
-        if ((p == a && q == b) || (p == b && q == a)) return raw_.mid_nodes[t][e];
-      }
+      if (const std::size_t e = edge_between(raw_.tets[t], a, b); e < 6) return raw_.mid_nodes[t][e];
     return kNone;
   }
 
   void set(VertexIndex a, VertexIndex b, VertexIndex mid, std::vector<std::array<VertexIndex, 6>>& mid_nodes) const {
     for (TetIndex t = cell_.first; t < cell_.first + cell_.tet_count; ++t)
-      for (std::size_t e = 0; e < 6; ++e) {
-        const VertexIndex p = raw_.tets[t][static_cast<std::size_t>(kTetEdges[e][0])],
-                          q = raw_.tets[t][static_cast<std::size_t>(kTetEdges[e][1])];
-        if ((p == a && q == b) || (p == b && q == a)) mid_nodes[t][e] = mid;
-      }
+      if (const std::size_t e = edge_between(raw_.tets[t], a, b); e < 6) mid_nodes[t][e] = mid;
   }
 
  private:

@@ -163,22 +163,13 @@ class Poly {
   }
 
  private:
-  std::uint64_t count(Scanner& scan, const Input& input, std::string_view what, std::uint64_t least_bytes) {
-    scan.at_end();
-    const char* const at = scan.position();
-    const std::int64_t n = scan.integer(fmt::format("the number of {}", what));
-    if (n < 0) scan.fail(fmt::format("{} {}; the file is damaged", n, what));
-    check_claim(input, at, {static_cast<std::uint64_t>(n), least_bytes, what}, scan.bytes_left());
-    return static_cast<std::uint64_t>(n);
-  }
-
   void read_nodes() {
-    const std::uint64_t n = count(scan_, input_, "nodes", 8);
+    const std::uint64_t n = read_count(scan_, input_, "nodes", 8);
     scan_.skip_line();
     if (n > 0) return read_node_lines(scan_, n);
     if (nodes_ == nullptr) scan_.fail("there are 0 nodes here, and no file .node beside");
     Scanner scan(*nodes_, '#');
-    const std::uint64_t beside = count(scan, *nodes_, "nodes", 8);
+    const std::uint64_t beside = read_count(scan, *nodes_, "nodes", 8);
     scan.skip_line();
     read_node_lines(scan, beside);
   }
@@ -210,14 +201,14 @@ class Poly {
   }
 
   std::vector<std::uint32_t> polygon() {
-    const std::uint64_t corners = count(scan_, input_, "corners of a polygon", 2);
+    const std::uint64_t corners = read_count(scan_, input_, "corners of a polygon", 2);
     std::vector<std::uint32_t> all;
     for (std::uint64_t k = 0; k < corners; ++k) all.push_back(corner());
     return all;
   }
 
   void read_facets() {
-    const std::uint64_t facets = count(scan_, input_, "facets", 4);
+    const std::uint64_t facets = read_count(scan_, input_, "facets", 4);
     const bool has_markers = !scan_.at_line_end() && scan_.integer("whether there are markers") > 0;
     scan_.skip_line();
     const std::size_t nodes = builder_.points.size();
@@ -241,8 +232,8 @@ class Poly {
   void read_facet(bool has_markers) {
     scan_.at_end();
     const char* const at = scan_.position();
-    const std::uint64_t polygons = count(scan_, input_, "polygons of a facet", 2);
-    const std::uint64_t holes = scan_.at_line_end() ? 0 : count(scan_, input_, "holes of a facet", 6);
+    const std::uint64_t polygons = read_count(scan_, input_, "polygons of a facet", 2);
+    const std::uint64_t holes = scan_.at_line_end() ? 0 : read_count(scan_, input_, "holes of a facet", 6);
     const std::int64_t marker = has_markers && !scan_.at_line_end() ? scan_.integer("a marker") : 0;
     scan_.skip_line();
     Facet facet;
@@ -276,7 +267,7 @@ class Poly {
 
   void read_holes() {
     if (scan_.at_end()) return;
-    const std::uint64_t holes = count(scan_, input_, "holes", 6);
+    const std::uint64_t holes = read_count(scan_, input_, "holes", 6);
     for (std::uint64_t k = 0; k < holes; ++k) {
       scan_.integer("the number of a hole");
       voids_.push_back(point(scan_));
@@ -286,7 +277,7 @@ class Poly {
 
   void read_regions() {
     if (scan_.at_end()) return;
-    const std::uint64_t regions = count(scan_, input_, "regions", 6);
+    const std::uint64_t regions = read_count(scan_, input_, "regions", 6);
     bool sized = false;
     for (std::uint64_t k = 0; k < regions; ++k) {
       scan_.integer("the number of a region");

@@ -43,18 +43,9 @@ class Tetgen {
   }
 
  private:
-  std::int64_t count(const Input& input, Scanner& scan, std::string_view what, std::uint64_t least_bytes) const {
-    scan.at_end();
-    const char* const at = scan.position();
-    const std::int64_t n = scan.integer(fmt::format("the number of {}", what));
-    if (n < 0) scan.fail(fmt::format("{} {}; the file is damaged", n, what));
-    check_claim(input, at, {static_cast<std::uint64_t>(n), least_bytes, what}, scan.bytes_left());
-    return n;
-  }
-
   void read_nodes() {
     Scanner scan(files_.node, '#');
-    const std::int64_t n = count(files_.node, scan, "nodes", 8);
+    const auto n = static_cast<std::int64_t>(read_count(scan, files_.node, "nodes", 8));
     if (scan.integer("the dimension") != 3) scan.fail("the nodes are not of dimension 3");
     scan.skip_line();
     for (std::int64_t i = 0; i < n; ++i) {
@@ -78,8 +69,8 @@ class Tetgen {
 
   void read_tets() {
     Scanner scan(files_.ele, '#');
-    const std::int64_t n = count(files_.ele, scan, "tetrahedra", 10), nodes = scan.integer("the nodes of each"),
-                       attributes = scan.integer("the number of attributes");
+    const auto n = static_cast<std::int64_t>(read_count(scan, files_.ele, "tetrahedra", 10));
+    const std::int64_t nodes = scan.integer("the nodes of each"), attributes = scan.integer("the number of attributes");
     if (nodes != 4 && nodes != 10) scan.fail(fmt::format("tetrahedra of {} nodes; expected 4 or 10", nodes));
     std::array<VertexIndex, 10> all;
     for (std::int64_t i = 0; i < n; ++i) {
@@ -97,7 +88,7 @@ class Tetgen {
   template <class Row>
   void read_rows(const Input& input, std::string_view what, const Row& row) {
     Scanner scan(input, '#');
-    const std::int64_t n = count(input, scan, what, 6);
+    const auto n = static_cast<std::int64_t>(read_count(scan, input, what, 6));
     const bool has_marker = scan.integer("whether there are markers") > 0;
     scan.skip_line();
     for (std::int64_t i = 0; i < n; ++i) {

@@ -125,7 +125,6 @@ class Naming {
   }
 
   bool is_ignored(std::int64_t value) const { return ignored_.contains(value); }
-  bool is_merged(std::int64_t value) const { return merged_.contains(value); }
   std::string name_of(std::int64_t value) const {
     const auto found = names_.find(value);
     return found != names_.end() && !found->second.empty() ? found->second : fmt::format("label {}", value);

@@ -4,6 +4,7 @@
 #include "base/core/elementary.h"
 #include "base/core/parallel.h"
 #include "base/geometry/measures.h"
+#include "base/geometry/nearest_that.h"
 
 #include <algorithm>
 #include <cmath>
@@ -34,13 +35,6 @@ constexpr double kMostUneven = 2.5;
 constexpr double kMostCurveSag = 0.4;
 // Farther from a triangle than this, in its longest edges, a polynomial is not a surface between points any more.
 constexpr double kFarthest = 0.25;
-
-std::vector<Triangle> as_triangles(const std::vector<Edge>& edges) {
-  std::vector<Triangle> triangles;
-  triangles.reserve(edges.size());
-  for (const auto& [a, b] : edges) triangles.push_back({a, b, b});
-  return triangles;
-}
 
 /// Per vertex that lies inside a curve: the two feature edges there.
 std::vector<std::array<std::uint32_t, 2>> edges_inside_curves(std::size_t vertices, const Features& sharp) {
@@ -96,7 +90,7 @@ SmoothSurface::SmoothSurface(const SurfaceMesh& surface, const EdgeTable& edges,
     : surface_(surface),
       tree_(tree),
       sharp_(std::move(sharp)),
-      curves_(surface.points, as_triangles(sharp_.edges)),
+      curves_(tree_of_segments(surface.points, sharp_.edges)),
       curve_at_(edges_inside_curves(surface.points.size(), sharp_)),
       curve_fit_of_(2 * sharp_.edges.size(), kNone) {
   find_wedges(edges);
@@ -125,29 +119,12 @@ void SmoothSurface::find_wedges(const EdgeTable& edges) {
 }
 
 std::optional<Foot> SmoothSurface::surface_foot(Vec3 p, Vec3 normal, double reach) const {
-  const auto faces = [&](std::uint32_t t) {
-    const auto& [a, b, c] = tree_.corners(t);
-    const Vec3 n = double_area_normal(a, b, c);
+  const auto nearest = nearest_that(tree_, p, reach, [&](std::uint32_t, const TriangleCorners& c) {
+    const Vec3 n = double_area_normal(c[0], c[1], c[2]);
     return dot(n, normal) >= kSameSide * length(n);
-  };
-  const auto nearest = tree_.nearest(p, reach * reach);
-  if (nearest.triangle == kNone) return std::nullopt;
-  if (faces(nearest.triangle)) return Foot{nearest.point, nearest.triangle};
-  Foot best;
-  double best_distance = reach * reach;
-  const Vec3 r{reach, reach, reach};
-  tree_.for_each_box_near({p - r, p + r}, [&](std::uint32_t t, const TriangleCorners& corners) {
-    if (!faces(t)) return true;
-    const Vec3 q = closest_point_on_triangle(p, corners[0], corners[1], corners[2]);
-    const double d = squared_distance(p, q);
-    if (d < best_distance || (d == best_distance && t < best.on)) {
-      best = {q, t};
-      best_distance = d;
-    }
-    return true;
   });
-  if (best.on == kNone) return std::nullopt;
-  return best;
+  if (nearest.triangle == kNone) return std::nullopt;
+  return Foot{nearest.point, nearest.triangle};
 }
 
 std::optional<Foot> SmoothSurface::curve_foot(Vec3 p, double reach) const {

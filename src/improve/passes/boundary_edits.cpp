@@ -5,7 +5,6 @@
 #include "base/geometry/doubtful_parts.h"
 #include "base/geometry/live_triangles.h"
 #include "base/geometry/measures.h"
-#include "base/geometry/predicates.h"
 #include "base/mesh/link_condition.h"
 #include "improve/passes/fewest_poor.h"
 #include "improve/passes/passes.h"
@@ -61,7 +60,7 @@ class BoundaryEditor {
       ++edits_.result.tried;
       if (!improve(t)) continue;
       ++edits_.result.done;
-      for (const TetIndex made : created_)
+      for (const TetIndex made : changed_)
         if (mesh_.shape(made).score < threshold) queue.push_back(made);
     }
     return edits_;
@@ -71,9 +70,7 @@ class BoundaryEditor {
   struct Collapse {
     VertexIndex gone = kNone, onto = kNone;
     double gain = kLeastFallByEdit;
-    std::vector<TetIndex> old_tets;
-    std::vector<Tet> new_tets;
-    std::vector<Shape> shapes;
+    MeshEditor::Refill tets;
     MeshEditor::BoundaryChange change;
   };
 
@@ -99,7 +96,8 @@ class BoundaryEditor {
       const bool on_features = mesh_.shape(t).score < kPoorAtFeature;
       return std::any_of(corners.begin(), corners.end(), [&](VertexIndex v) { return move(v, on_features); });
     }
-    if (!editor_.replace(best_.old_tets, best_.new_tets, best_.shapes, created_, &best_.change)) return false;
+    if (!editor_.replace(best_.tets, &best_.change)) return false;
+    changed_ = editor_.created();
     if (guide_.kind(best_.gone) == BoundaryGuide::Kind::kCurve) guide_.merge_curve(best_.gone, best_.onto);
     numbers_.clear();
     for (const HalfFace across : best_.change.gone) numbers_.push_back(across - kFirstOutside);
@@ -135,8 +133,8 @@ class BoundaryEditor {
     star_edit_.commit();
     edits_.largest_move = std::max(edits_.largest_move, distance(from, descent_.place()));
     live_.note_changed(numbers_);
-    created_.clear();
-    for (const HalfFace h : star_) created_.push_back(h / 4);
+    changed_.clear();
+    for (const HalfFace h : star_) changed_.push_back(h / 4);
     return true;
   }
 
@@ -169,7 +167,7 @@ class BoundaryEditor {
     if (guide_.is_frozen(w)) return;
     if (guide_.kind(u) == BoundaryGuide::Kind::kCurve && !guide_.is_feature_edge(u, w)) return;
     if (!std::binary_search(link_.wall_vertices.begin(), link_.wall_vertices.end(), w)) return;
-    Collapse c{u, w, 0, {}, {}, {}, {}};
+    Collapse c{u, w, 0, {}, {}};
     if (!plan_tets(c) || !(c.gain > best_.gain) || !keeps_manifold(w) || !plan_boundary(c)) return;
     const Vec3 p = mesh_.point(u);
     if (is_true(p, limit_at(p)) && crosses_nothing() && stays_near()) best_ = std::move(c);
@@ -183,28 +181,24 @@ class BoundaryEditor {
     double longest = 0;
     for (const VertexIndex v : link_.vertices) longest = std::max(longest, distance(from, mesh_.point(v)));
     for (const HalfFace h : star_) {
-      c.old_tets.push_back(h / 4);
+      c.tets.old_tets.push_back(h / 4);
       c.gain += lack_of(mesh_.shape(h / 4).score);
       if (mesh_.has(h / 4, c.onto)) continue;
       Tet made = mesh_.tet(h / 4);
       made[h % 4] = c.onto;
       for (const VertexIndex v : made)
         if (distance(p, mesh_.point(v)) > kLongestOfEdit * longest) return false;
-      c.new_tets.push_back(made);
+      c.tets.new_tets.push_back(made);
       batch_.add(mesh_.point(made[0]), mesh_.point(made[1]), mesh_.point(made[2]), mesh_.point(made[3]));
     }
     batch_.evaluate();
     for (int k = 0; k < batch_.size; ++k) {
       const Shape s = batch_.shape(k);
-      const Tet& t = c.new_tets[k];
-      if (!floor_.below(s)) return false;
-      if (s.beta < kCertainBeta &&
-          orient3d(mesh_.point(t[0]), mesh_.point(t[1]), mesh_.point(t[2]), mesh_.point(t[3])) <= 0)
-        return false;
-      c.shapes.push_back(s);
+      if (!editor_.is_usable(c.tets.new_tets[k], s, floor_)) return false;
+      c.tets.shapes.push_back(s);
       c.gain -= lack_of(s.score);
     }
-    return !c.new_tets.empty();
+    return !c.tets.new_tets.empty();
   }
 
   bool keeps_manifold(VertexIndex w) {
@@ -353,7 +347,7 @@ class BoundaryEditor {
   LackDescent descent_;
   Collapse best_;
   BoundaryEdits edits_;
-  std::vector<TetIndex> created_;
+  std::vector<TetIndex> changed_;
 };
 
 }  // namespace

@@ -100,17 +100,16 @@ class Collapser {
 
   bool collapse_to(VertexIndex u) {
     star_.evaluate(mesh_.point(u));
-    old_tets_.clear(), new_tets_.clear(), shapes_.clear();
+    refill_.clear();
     for (std::size_t k = 0; k < star_.faces().size(); ++k) {
       const HalfFace h = star_.faces()[k];
-      old_tets_.push_back(h / 4);
+      refill_.old_tets.push_back(h / 4);
       if (mesh_.has(h / 4, u)) continue;
       Tet t = mesh_.tet(h / 4);
       t[h % 4] = u;
-      new_tets_.push_back(t);
-      shapes_.push_back(star_.batch().shape(static_cast<int>(k)));
+      refill_.add(t, star_.batch().shape(static_cast<int>(k)));
     }
-    return editor_.replace(old_tets_, new_tets_, shapes_, created_);
+    return editor_.replace(refill_);
   }
 
   MeshEditor editor_;
@@ -121,9 +120,7 @@ class Collapser {
   float old_worst_ = 0;
   double old_lack_ = 0, squared_limit_ = 0;
   std::vector<VertexIndex> neighbours_;
-  std::vector<TetIndex> old_tets_, created_;
-  std::vector<Tet> new_tets_;
-  std::vector<Shape> shapes_;
+  MeshEditor::Refill refill_;
 };
 
 }  // namespace

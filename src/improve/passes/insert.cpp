@@ -56,7 +56,9 @@ class Inserter {
     const Vec3 p = climb(best_place_, kLastSteps);
     if (gain() <= (goal_ == Goal::kWorst ? kLeastGainOfVertex : kLeastRelief) || !star_.star_acceptable(p, floor_))
       return false;
-    return commit(p);
+    corners_.clear();
+    for (const HalfFace h : faces_) corners_.push_back(face_of(mesh_.tet(h / 4), static_cast<int>(h % 4)));
+    return editor_.replace_by_star(tets_, corners_, star_, p);
   }
 
   bool in_cavity(TetIndex t) const { return std::find(tets_.begin(), tets_.end(), t) != tets_.end(); }
@@ -118,9 +120,8 @@ class Inserter {
         if (!is_outside(o) && in_cavity(o / 4)) continue;
         faces_.push_back(4 * t + i);
         if (faces_.size() > ShapeBatch::kBatch) return;
-        const Tet& c = mesh_.tet(t);
-        const auto& f = kTetFaces[i];
-        star_.add(mesh_.point(c[f[0]]), mesh_.point(c[f[1]]), mesh_.point(c[f[2]]));
+        const Triangle f = face_of(mesh_.tet(t), i);
+        star_.add(mesh_.point(f[0]), mesh_.point(f[1]), mesh_.point(f[2]));
       }
   }
 
@@ -131,19 +132,6 @@ class Inserter {
     const TetIndex behind = worst < 0 ? kNone : editor_.behind(faces_[worst]);
     if (behind != kNone) tets_.push_back(behind);
     return behind != kNone;
-  }
-
-  bool commit(Vec3 p) {
-    const VertexIndex v = editor_.add_vertex(p);
-    new_tets_.clear();
-    shapes_.clear();
-    for (std::size_t k = 0; k < faces_.size(); ++k) {
-      const Tet& c = mesh_.tet(faces_[k] / 4);
-      const auto& f = kTetFaces[faces_[k] % 4];
-      new_tets_.push_back({v, c[f[0]], c[f[1]], c[f[2]]});
-      shapes_.push_back(star_.shape(static_cast<int>(k)));
-    }
-    return editor_.replace(tets_, new_tets_, shapes_, created_);
   }
 
   MeshEditor editor_;
@@ -157,9 +145,7 @@ class Inserter {
   ShapeBatch star_;
   WorstMaximizer maximizer_;
   LackDescent descent_;
-  std::vector<Tet> new_tets_;
-  std::vector<Shape> shapes_;
-  std::vector<TetIndex> created_;
+  std::vector<Triangle> corners_;
 };
 
 }  // namespace

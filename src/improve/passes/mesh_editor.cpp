@@ -1,6 +1,7 @@
 #include "improve/passes/mesh_editor.h"
 
 #include "base/core/validate.h"
+#include "base/geometry/predicates.h"
 #include "base/mesh/face_table.h"
 
 #include <algorithm>
@@ -30,22 +31,6 @@ void MeshEditor::star(VertexIndex v, std::vector<HalfFace>& faces) {
   }
 }
 
-void MeshEditor::edge_ring(TetIndex t, int i, int j, EdgeRing& out) {
-  if (complex_.turn_around(t, i, j, out, [](TetIndex) { return true; }) == TetComplex::Turn::kClosed) return;
-  // An open fan: what lies on the other side of t goes before it.
-  TetIndex at = t;
-  VertexIndex from = out.ring[0], to = out.ring[1];
-  for (;;) {
-    const HalfFace o = complex_.across[4 * at + mesh_.corner_of(at, to)];
-    if (is_outside(o)) return;
-    at = o / 4;
-    to = from;
-    from = complex_.tets[at][o % 4];
-    out.tets.insert(out.tets.begin(), at);
-    out.ring.insert(out.ring.begin(), from);
-  }
-}
-
 bool MeshEditor::edge_ring_where_worst(TetIndex t, int i, int j, std::size_t longest, EdgeRing& out) {
   return complex_.turn_around(t, i, j, out, [&](TetIndex next) {
     return out.tets.size() < longest && !mesh_.worse(next, t);
@@ -70,8 +55,13 @@ bool MeshEditor::have_both_sides(std::span<const TetIndex> tets) {
   return std::adjacent_find(parted_.begin(), parted_.end()) != parted_.end();
 }
 
-bool MeshEditor::replace(std::span<const TetIndex> old_tets, std::span<const Tet> new_tets,
-                         std::span<const Shape> shapes, std::vector<TetIndex>& created, const BoundaryChange* change) {
+bool MeshEditor::is_usable(const Tet& t, const Shape& shape, const Floor& floor) const {
+  return floor.below(shape) && (shape.beta >= kCertainBeta || orient3d(mesh_.point(t[0]), mesh_.point(t[1]),
+                                                                       mesh_.point(t[2]), mesh_.point(t[3])) > 0);
+}
+
+bool MeshEditor::replace(const Refill& refill, const BoundaryChange* change) {
+  const auto& [old_tets, new_tets, shapes] = refill;
   if (have_both_sides(old_tets)) return false;
   rim_.reset(4 * (old_tets.size() + new_tets.size()));
   for (const TetIndex t : old_tets) rim_.open(complex_, t);
@@ -82,25 +72,35 @@ bool MeshEditor::replace(std::span<const TetIndex> old_tets, std::span<const Tet
     if (mesh_.taken_) note_gone(t);
   }
   if (change) change_boundary(*change);
-  created.clear();
+  created_.clear();
   for (std::size_t k = 0; k < new_tets.size(); ++k) {
     const TetIndex t = k < old_tets.size() ? old_tets[k] : slot();
     complex_.tets[t] = new_tets[k];
     mesh_.shapes_[t] = shapes[k];
     if (has_regions) mesh_.region_[t] = region;
-    created.push_back(t);
+    created_.push_back(t);
   }
   for (std::size_t k = new_tets.size(); k < old_tets.size(); ++k) {
     complex_.tets[old_tets[k]] = {kNone, kNone, kNone, kNone};
     mesh_.shapes_[old_tets[k]] = kNoShape;
     complex_.free.push_back(old_tets[k]);
   }
-  for (const TetIndex t : created) {
+  for (const TetIndex t : created_) {
     for (const VertexIndex v : complex_.tets[t]) complex_.tet_at[v] = t;
     rim_.tie(complex_, t);
   }
-  validate(mesh_, created);
+  validate(mesh_, created_);
   return true;
+}
+
+bool MeshEditor::replace_by_star(std::span<const TetIndex> old_tets, std::span<const Triangle> faces,
+                                 const ShapeBatch& star, Vec3 apex) {
+  const VertexIndex v = add_vertex(apex);
+  Refill refill;
+  refill.old_tets.assign(old_tets.begin(), old_tets.end());
+  for (std::size_t k = 0; k < faces.size(); ++k)
+    refill.add({v, faces[k][0], faces[k][1], faces[k][2]}, star.shape(static_cast<int>(k)));
+  return replace(refill);
 }
 
 void MeshEditor::note_gone(TetIndex t) {

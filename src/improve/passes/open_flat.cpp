@@ -27,7 +27,6 @@ class FlatOpener {
 
   /// True if tet t is flat, and it and others around one of its edges were replaced by the star of a new vertex.
   bool improve(TetIndex t) {
-    created_.clear();
     if (!is_flat(t)) return false;
     float best = kTimesBetter * std::max(0.0f, mesh_.shape(t).small);
     int best_edge = -1;
@@ -36,10 +35,10 @@ class FlatOpener {
         best = least_angle();
         best_edge = e;
       }
-    return best_edge >= 0 && load_star(t, best_edge) && commit();
+    return best_edge >= 0 && load_star(t, best_edge) && editor_.replace_by_star(ring_.tets, faces_, star_, apex_);
   }
 
-  const std::vector<TetIndex>& created() const { return created_; }
+  const std::vector<TetIndex>& created() const { return editor_.created(); }
 
  private:
   double volume(TetIndex t) const {
@@ -68,11 +67,8 @@ class FlatOpener {
     star_.size = 0;
     for (const TetIndex r : ring_.tets)
       for (const VertexIndex end : {a, b}) {
-        const int corner = mesh_.corner_of(r, end);
-        const Tet& c = mesh_.tet(r);
-        const auto& f = kTetFaces[corner];
-        faces_.push_back({c[f[0]], c[f[1]], c[f[2]]});
-        star_.add(mesh_.point(c[f[0]]), mesh_.point(c[f[1]]), mesh_.point(c[f[2]]));
+        const Triangle f = faces_.emplace_back(face_of(mesh_.tet(r), mesh_.corner_of(r, end)));
+        star_.add(mesh_.point(f[0]), mesh_.point(f[1]), mesh_.point(f[2]));
       }
     star_.evaluate_star(apex_);
     return true;
@@ -84,17 +80,6 @@ class FlatOpener {
     return least;
   }
 
-  bool commit() {
-    const VertexIndex v = editor_.add_vertex(apex_);
-    new_tets_.clear();
-    shapes_.clear();
-    for (std::size_t k = 0; k < faces_.size(); ++k) {
-      new_tets_.push_back({v, faces_[k][0], faces_[k][1], faces_[k][2]});
-      shapes_.push_back(star_.shape(static_cast<int>(k)));
-    }
-    return editor_.replace(ring_.tets, new_tets_, shapes_, created_);
-  }
-
   MeshEditor editor_;
   EditMesh& mesh_;
   Floor floor_;
@@ -102,9 +87,6 @@ class FlatOpener {
   Vec3 apex_;
   EdgeRing ring_;
   std::vector<Triangle> faces_;  ///< of the elements around the edge, as seen from inside
-  std::vector<Tet> new_tets_;
-  std::vector<Shape> shapes_;
-  std::vector<TetIndex> created_;
 };
 
 }  // namespace

@@ -1,10 +1,9 @@
-// Changes of connection that raise the worst score of the place they change: removal of an edge, the new triangulation
-// of its ring found by dynamic programming (Klincsek 1980; Shewchuk, "Two discrete optimization algorithms for the
-// topological improvement of tetrahedral meshes", 2002), and of a face between two tetrahedra (2-3 flip). The 3-2 and
-// the 4-4 flip are removals of edges with rings of three and four.
+// Changes of connection that raise the worst score of the place they change: removal of an edge, its ring triangulated
+// anew (RingFilling), and of a face between two tetrahedra (2-3 flip). The 3-2 and the 4-4 flip are removals of edges
+// with rings of three and four.
 
 #include "base/geometry/measures.h"
-#include "base/geometry/predicates.h"
+#include "base/mesh/ring_filling.h"
 #include "improve/passes/fewest_poor.h"
 #include "improve/passes/passes.h"
 #include "improve/passes/poor_tets.h"
@@ -17,17 +16,12 @@ namespace octafront::improve {
 namespace {
 
 /// A way to refill the place of some tets, and by how much it is better than what is there.
-struct Refill {
-  std::vector<TetIndex> old_tets;
-  std::vector<Tet> new_tets;
-  std::vector<Shape> shapes;
+struct BestRefill : MeshEditor::Refill {
   float gain = 0;
   std::optional<MeshEditor::BoundaryChange> turn;  ///< where the removed edge lies on the boundary
 
   void clear() {
-    old_tets.clear();
-    new_tets.clear();
-    shapes.clear();
+    Refill::clear();
     gain = 0;
     turn.reset();
   }
@@ -60,10 +54,10 @@ class Reconnector {
     if (guide_ && goal_ == Goal::kWorst)
       for (const auto& [i, j] : kTetEdges) try_boundary_edge(t, i, j);
     if (best_.old_tets.empty()) return false;
-    return editor_.replace(best_.old_tets, best_.new_tets, best_.shapes, created_, best_.turn ? &*best_.turn : nullptr);
+    return editor_.replace(best_, best_.turn ? &*best_.turn : nullptr);
   }
 
-  const std::vector<TetIndex>& created() const { return created_; }
+  const std::vector<TetIndex>& created() const { return editor_.created(); }
 
  private:
   static constexpr float kUnusable = -1e6f;  ///< below the sum of any usable values
@@ -84,11 +78,7 @@ class Reconnector {
   float usable_value(int i, const Tet& t) const {
     const Shape s = batch_.shape(i);
     const bool for_mean = goal_ == Goal::kMean || goal_ == Goal::kMeanQuick;
-    if (!floor_.below(s) || (for_mean && s.score < guard_)) return kUnusable;
-    if (s.beta < kCertainBeta &&
-        orient3d(mesh_.point(t[0]), mesh_.point(t[1]), mesh_.point(t[2]), mesh_.point(t[3])) <= 0)
-      return kUnusable;
-    return value_of(s);
+    return (for_mean && s.score < guard_) || !editor_.is_usable(t, s, floor_) ? kUnusable : value_of(s);
   }
 
   /// A bit for each face of t that lies on the boundary or has a worse element behind it: its edges are looked at from
@@ -128,12 +118,22 @@ class Reconnector {
     batch_.evaluate();
     for (int i1 = 0; i1 < n; ++i1)
       for (int k = i1 + 1 + (i1 == 0); k < n; ++k) value_triangles(a, b, i1, k, n);
-    const float after = triangulate(n);
+    const float after = filling_.best(
+        n, neutral(), 4 * kUnusable,
+        [&](int i, int k, int j, float low, float high, float) {
+          return combined(combined(low, high), value_[i][k][j]);
+        },
+        [](int, int) { return true; });
     if (after <= bar) return false;
     best_.clear();
     best_.old_tets = ring_.tets;
     best_.gain = after - before;
-    emit(a, b, 0, n - 1);
+    const auto& r = ring_.ring;
+    filling_.for_each(n, [&](int i, int k, int j) {
+      const int at = index_[i][k][j];
+      best_.add({r[i], r[k], r[j], b}, batch_.shape(at));
+      best_.add({r[i], r[j], r[k], a}, batch_.shape(at + 1));
+    });
     return true;
   }
 
@@ -227,40 +227,11 @@ class Reconnector {
     return best;
   }
 
-  /// Best value of the ring's triangulations; the choices stay in apex_.
-  float triangulate(int n) {
-    std::array<std::array<float, kLongestRing>, kLongestRing> best;
-    for (int i = 0; i + 1 < n; ++i) best[i][i + 1] = neutral();
-    for (int span = 2; span < n; ++span)
-      for (int i = 0; i + span < n; ++i) {
-        const int j = i + span;
-        best[i][j] = 4 * kUnusable;
-        for (int k = i + 1; k < j; ++k) {
-          const float value = combined(combined(best[i][k], best[k][j]), value_[i][k][j]);
-          if (value > best[i][j]) best[i][j] = value, apex_[i][j] = k;
-        }
-      }
-    return best[0][n - 1];
-  }
-
-  void emit(VertexIndex a, VertexIndex b, int i, int j) {
-    if (j - i < 2) return;
-    const int k = apex_[i][j], at = index_[i][k][j];
-    const auto& r = ring_.ring;
-    best_.new_tets.push_back({r[i], r[k], r[j], b});
-    best_.new_tets.push_back({r[i], r[j], r[k], a});
-    best_.shapes.push_back(batch_.shape(at));
-    best_.shapes.push_back(batch_.shape(at + 1));
-    emit(a, b, i, k);
-    emit(a, b, k, j);
-  }
-
   void try_face(TetIndex t, int i) {
     const TetIndex behind = editor_.behind(4 * t + i);
     if (behind == kNone || mesh_.worse(behind, t)) return;
     const VertexIndex a = mesh_.tet(t)[i], b = mesh_.tet(behind)[mesh_.across(4 * t + i) % 4];
-    const auto& f = kTetFaces[i];
-    const VertexIndex x = mesh_.tet(t)[f[0]], y = mesh_.tet(t)[f[1]], z = mesh_.tet(t)[f[2]];
+    const auto [x, y, z] = face_of(mesh_.tet(t), i);
     const std::array<Tet, 3> made{{{a, b, x, y}, {a, b, y, z}, {a, b, z, x}}};
     batch_.size = 0;
     for (const Tet& m : made) add_candidate(m);
@@ -272,8 +243,7 @@ class Reconnector {
     if (after <= before + best_.gain) return;
     best_.clear();
     best_.old_tets = {t, behind};
-    best_.new_tets.assign(made.begin(), made.end());
-    for (int k = 0; k < 3; ++k) best_.shapes.push_back(batch_.shape(k));
+    for (int k = 0; k < 3; ++k) best_.add(made[k], batch_.shape(k));
     best_.gain = after - before;
   }
 
@@ -286,12 +256,11 @@ class Reconnector {
   const BoundaryGuide* guide_;
   EdgeRing ring_;
   std::vector<HalfFace> star_;
-  Refill best_;
+  BestRefill best_;
   ShapeBatch batch_;
-  std::vector<TetIndex> created_;
   int index_[kLongestRing][kLongestRing][kLongestRing];
   float value_[kLongestRing][kLongestRing][kLongestRing];
-  int apex_[kLongestRing][kLongestRing];
+  RingFilling<kLongestRing> filling_;
 };
 
 }  // namespace

@@ -37,7 +37,7 @@ class PolyhedronReconnector {
     return false;
   }
 
-  const std::vector<TetIndex>& created() const { return created_; }
+  const std::vector<TetIndex>& created() const { return editor_.created(); }
 
  private:
   bool holds(TetIndex t) const { return std::find(tets_.begin(), tets_.end(), t) != tets_.end(); }
@@ -77,9 +77,8 @@ class PolyhedronReconnector {
         const HalfFace across = mesh_.across(4 * t + i);
         if (!is_outside(across) && holds(across / 4)) continue;
         if (faces_.size() == PolyhedronSearch::kMostFaces) return false;
-        const Tet& c = mesh_.tet(t);
-        const auto& f = kTetFaces[i];
-        faces_.push_back({number_of(c[f[0]]), number_of(c[f[1]]), number_of(c[f[2]])});
+        const Triangle f = face_of(mesh_.tet(t), i);
+        faces_.push_back({number_of(f[0]), number_of(f[1]), number_of(f[2])});
       }
     points_.clear();
     for (const VertexIndex v : corners_) points_.push_back(mesh_.point(v));
@@ -87,14 +86,10 @@ class PolyhedronReconnector {
   }
 
   bool commit() {
-    new_tets_.clear();
-    shapes_.clear();
-    for (const PolyhedronSearch::Tet& m : search_.tets()) {
-      Tet& t = new_tets_.emplace_back();
-      for (int k = 0; k < 4; ++k) t[k] = corners_[m.corners[k]];
-      shapes_.push_back(m.shape);
-    }
-    return editor_.replace(tets_, new_tets_, shapes_, created_);
+    MeshEditor::Refill refill{tets_, {}, {}};
+    for (const auto& [c, shape] : search_.tets())
+      refill.add({corners_[c[0]], corners_[c[1]], corners_[c[2]], corners_[c[3]]}, shape);
+    return editor_.replace(refill);
   }
 
   static constexpr std::size_t kMostTets = 24;
@@ -103,12 +98,10 @@ class PolyhedronReconnector {
   EditMesh& mesh_;
   Floor floor_;
   PolyhedronSearch search_;
-  std::vector<TetIndex> tets_, created_;
+  std::vector<TetIndex> tets_;
   std::vector<VertexIndex> corners_;
   std::vector<Vec3> points_;
   std::vector<PolyhedronSearch::Face> faces_;
-  std::vector<Tet> new_tets_;
-  std::vector<Shape> shapes_;
 };
 
 }  // namespace

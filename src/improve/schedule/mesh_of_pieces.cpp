@@ -525,13 +525,9 @@ TetMesh MeshOfPieces::release(Features* features, std::vector<VertexIndex>* numb
   place = {};
   join_marks(comm_, is_used, "vertices in use");
   std::vector<VertexIndex> number(points_.size(), kNone);
-  VertexIndex used = 0;
-  for (VertexIndex v = 0; v < points_.size(); ++v) {
-    if (is_used[v] == 0) continue;
-    points_[used] = points_[v];
-    number[v] = used++;
-  }
-  points_.resize(used);
+  for (VertexIndex v = 0; v < points_.size(); ++v)
+    if (is_used[v] != 0) number[v] = 0;
+  keep_numbered(points_, number);
   drop_removed_triangles(mesh);
   renumber_vertices(mesh, number);
   mesh.points = std::exchange(points_, {});

@@ -2,9 +2,8 @@
 
 #include <octafront/surface_mesh.h>
 
-#include "base/core/disjoint_sets.h"
 #include "base/geometry/measures.h"
-#include "base/mesh/edge_table.h"
+#include "base/mesh/surface_topology.h"
 
 #include <algorithm>
 #include <cmath>
@@ -29,10 +28,6 @@ constexpr double kLeaves = 0.5;
 
 Vec3 area_normal(const TriangleCorners& t) {
   return double_area_normal(t[0], t[1], t[2]);
-}
-
-Edge sorted_edge(VertexIndex a, VertexIndex b) {
-  return a < b ? Edge{a, b} : Edge{b, a};
 }
 
 }  // namespace
@@ -87,27 +82,11 @@ void BoundaryGuide::freeze_where_boundary_touches_itself(const EditMesh& mesh) {
   std::vector<Triangle> boundary;
   for (HalfFace h = 0; h < 4 * mesh.slots(); ++h) {
     if (!mesh.alive(h / 4) || !is_outside(mesh.across(h)) || mesh.across(h) == kBetweenRegions) continue;
-    const auto& f = kTetFaces[h % 4];
-    const Tet& t = mesh.tet(h / 4);
-    boundary.push_back({t[f[0]], t[f[1]], t[f[2]]});
+    boundary.push_back(face_of(mesh.tet(h / 4), static_cast<int>(h % 4)));
   }
-  const EdgeTable table = make_edge_table(mesh.vertices(), boundary);
-  DisjointSets fans(3 * boundary.size());  // of corners
-  const auto corner_at = [&](HalfEdge h, VertexIndex v) { return start_of(boundary, h) == v ? h : next_of(h); };
-  for (std::size_t e = 0; e < table.size(); ++e)
-    for (const VertexIndex v : table.edges[e]) {
-      const auto uses = table.uses(e);
-      if (uses.size() == 2)
-        fans.join(corner_at(uses[0], v), corner_at(uses[1], v));
-      else
-        frozen_[v] = 1;
-    }
-  std::vector<std::uint32_t> fan_at(mesh.vertices(), kNone);
-  for (HalfEdge k = 0; k < 3 * boundary.size(); ++k) {
-    std::uint32_t& fan = fan_at[start_of(boundary, k)];
-    if (fan == kNone) fan = fans.find(k);
-    if (fan != fans.find(k)) frozen_[start_of(boundary, k)] = 1;
-  }
+  const std::vector<std::uint8_t> touches =
+      touching_vertices(boundary, make_edge_table(mesh.vertices(), boundary), mesh.vertices(), FansOver::kEdgesOfTwo);
+  for (VertexIndex v = 0; v < touches.size(); ++v) frozen_[v] |= touches[v];
 }
 
 bool BoundaryGuide::may_turn(VertexIndex a, VertexIndex b) const {

@@ -169,10 +169,9 @@ TetMesh EditMesh::release() {
   TetMesh mesh = std::move(rest_);
   std::vector<VertexIndex> new_of_old(points_.size(), kNone);
   for (VertexIndex v = 0; v < points_.size(); ++v)
-    if (complex_.tet_at[v] != kNone) {
-      new_of_old[v] = static_cast<VertexIndex>(mesh.points.size());
-      mesh.points.push_back(points_[v]);
-    }
+    if (complex_.tet_at[v] != kNone) new_of_old[v] = 0;
+  mesh.points = points_;
+  keep_numbered(mesh.points, new_of_old);
   drop_removed_triangles(mesh);
   renumber_vertices(mesh, new_of_old);
   complex_.across = std::vector<HalfFace>();

@@ -4,18 +4,11 @@
 
 namespace octafront::improve {
 
-TriangleTree tree_of_segments(const SurfaceMesh& surface, const std::vector<Edge>& edges) {
-  std::vector<Triangle> segments;
-  segments.reserve(edges.size());
-  for (const auto& [a, b] : edges) segments.push_back({a, b, b});
-  return TriangleTree(surface.points, segments);
-}
-
 FeatureCurves::FeatureCurves(const SurfaceMesh& surface, const Features& features)
     : surface_(surface),
       edges_(features.edges),
       at_vertex_(surface.points.size(), {kNone, kNone}),
-      tree_(tree_of_segments(surface, features.edges)) {
+      tree_(tree_of_segments(surface.points, features.edges)) {
   std::vector<std::uint8_t> valence(surface.points.size(), 0);
   for (std::uint32_t e = 0; e < edges_.size(); ++e)
     for (const VertexIndex v : edges_[e]) {

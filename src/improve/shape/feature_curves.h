@@ -18,9 +18,6 @@ struct SurfaceMesh;
 
 namespace octafront::improve {
 
-/// Edges as flat triangles, in their order.
-TriangleTree tree_of_segments(const SurfaceMesh& surface, const std::vector<Edge>& edges);
-
 class FeatureCurves {
  public:
   FeatureCurves(const SurfaceMesh& surface, const Features& features);

@@ -6,7 +6,6 @@
 #include "base/core/elementary.h"
 #include "base/geometry/measures.h"
 #include "base/mesh/complex.h"
-#include "improve/shape/feature_curves.h"
 
 #include <algorithm>
 #include <cmath>
@@ -72,7 +71,7 @@ std::vector<std::array<VertexIndex, 2>> ends_of(const Features& features, const 
 }  // namespace
 
 InputForce::InputForce(const BoundaryInput& input) : input_(input), is_complex_(is_complex(input.surface)) {
-  segments_ = tree_of_segments(input.surface, input.features.edges);
+  segments_ = tree_of_segments(input.surface.points, input.features.edges);
   curve_ = curves_of(input.features, input.surface.points.size());
   ends_ = ends_of(input.features, curve_, input.surface.points.size());
   for (const Edge& e : input.features.edges) {

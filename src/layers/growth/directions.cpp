@@ -75,7 +75,6 @@ class Corner {
         add_distinct(planes_, walls.inward[f], kSamePlane);
   }
 
-  bool is_bound() const { return !planes_.empty(); }
   bool is_stuck() const { return planes_.size() > 2; }
   double sight(Vec3 d) const { return sight_of(normals_, d); }
 

@@ -47,11 +47,7 @@ Walls::Walls(const RegionWall& wall)
       is_wall(wall.is_wall),
       shared(wall.shared),
       held(wall.held),
-      faces(surface.points.size(),
-            [&](const auto& add) {
-              for (std::uint32_t f = 0; f < surface.triangles.size(); ++f)
-                for (const VertexIndex v : surface.triangles[f]) add(v, f);
-            }),
+      faces(rows_at_vertices(surface.points.size(), surface.triangles)),
       grows(surface.points.size(), 0),
       rims(rims_of(wall)),
       is_outside(wall.region == kNone) {

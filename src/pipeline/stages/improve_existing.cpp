@@ -6,6 +6,7 @@
 
 #include "base/core/flat_map.h"
 #include "base/labels/labels.h"
+#include "base/mesh/renumber.h"
 #include "improve/curved/curved.h"
 #include "improve/schedule/kept_labels.h"
 #include "improve/schedule/schedule.h"
@@ -30,17 +31,8 @@ namespace {
 
 SurfaceMesh without_inner_points(const SurfaceMesh& surface) {
   SurfaceMesh out;
-  std::vector<VertexIndex> here(surface.points.size(), kNone);
-  for (Triangle t : surface.triangles) {
-    for (VertexIndex& v : t) {
-      if (here[v] == kNone) {
-        here[v] = static_cast<VertexIndex>(out.points.size());
-        out.points.push_back(surface.points[v]);
-      }
-      v = here[v];
-    }
-    out.triangles.push_back(t);
-  }
+  PointsTaken taken(surface.points);
+  for (const Triangle& t : surface.triangles) out.triangles.push_back(taken.take(t, out.points));
   return out;
 }
 

@@ -39,15 +39,19 @@ void renumber(std::vector<std::uint32_t>& patch, std::size_t faces, const std::v
     if (p < number.size()) p = number[p];
 }
 
-void take_patches_of(const TrueGeometry& geometry, Filled& filled) {
+void renumber_patches(Filled& filled, const std::vector<std::uint32_t>& number, std::vector<std::string> names) {
   auto& [mesh, boundary, grown, tets] = filled;
-  std::vector<std::string> names = geometry.patch_names();
-  const std::vector<std::uint32_t> number = renumbering(mesh.patch_names, names);
   renumber(mesh.patch, mesh.boundary.size(), number);
   renumber(mesh.interface_patch, mesh.interfaces.size(), number);
   renumber(boundary.surface.patch, boundary.surface.triangles.size(), number);
   if (grown) renumber(grown->ground.patch, grown->ground.triangles.size(), number);
   mesh.patch_names = boundary.surface.patch_names = std::move(names);
+}
+
+void take_patches_of(const TrueGeometry& geometry, Filled& filled) {
+  std::vector<std::string> names = geometry.patch_names();
+  const std::vector<std::uint32_t> number = renumbering(filled.mesh.patch_names, names);
+  renumber_patches(filled, number, std::move(names));
 }
 
 /// Patches of no geometry come behind the parts.
@@ -169,11 +173,7 @@ void name_parts(const Prepared& input, Filled& filled, Run& run) {
   auto [number, names] = patches_of_parts(geometry);
   for (std::size_t p = geometry.patch_names().size(); p < mesh.patch_names.size(); ++p)
     number.push_back(static_cast<std::uint32_t>(names.size())), names.push_back(mesh.patch_names[p]);
-  renumber(mesh.patch, mesh.boundary.size(), number);
-  renumber(mesh.interface_patch, mesh.interfaces.size(), number);
-  renumber(boundary.surface.patch, boundary.surface.triangles.size(), number);
-  if (grown) renumber(grown->ground.patch, grown->ground.triangles.size(), number);
-  mesh.patch_names = boundary.surface.patch_names = std::move(names);
+  renumber_patches(filled, number, std::move(names));
   add_patch_curves(mesh);
   add_placed_sets(mesh, lines);
 }

@@ -35,7 +35,6 @@ class PointSizes {
   /// Requires points. Vertices and points are one if they are nearer than a millionth of the diagonal.
   PointSizes(const SurfaceMesh& surface, std::vector<PointSize> points);
   double at(const PlaceOnSurface& place) const;
-  bool is_per_vertex() const { return !of_vertex_.empty(); }
 
  private:
   std::uint32_t nearest(Vec3 p, double limit_squared) const { return tree_->nearest(p, limit_squared).triangle; }

@@ -15,7 +15,6 @@ namespace octafront {
 
 namespace {
 
-constexpr std::uint32_t kLeafSize = 4;
 /// Places beyond a face by no more than this part of the height of an element are in it, for rounding's sake.
 constexpr double kRounding = 1e-9;
 
@@ -79,72 +78,39 @@ double MeshSizes::size_at_corner(std::uint32_t element, VertexIndex v) const {
   return mesh_->point_sizes.empty() ? mesh_->element_sizes[element] : mesh_->point_sizes[v];
 }
 
-MeshSizes::Element MeshSizes::element(std::uint32_t number) const {
-  Element made{{}, std::numeric_limits<double>::infinity(), number};
+MeshSizes::Bounds MeshSizes::bounds_of(std::uint32_t element) const {
+  Bounds made;
   const auto add = [&](VertexIndex v) {
     made.box.add(mesh_->points[v]);
-    made.least = std::min(made.least, size_at_corner(number, v));
+    made.least = std::min(made.least, size_at_corner(element, v));
   };
   if (mesh_->tets.empty())
-    for (const VertexIndex v : mesh_->triangles[number]) add(v);
+    for (const VertexIndex v : mesh_->triangles[element]) add(v);
   else
-    for (const VertexIndex v : mesh_->tets[number]) add(v);
+    for (const VertexIndex v : mesh_->tets[element]) add(v);
   return made;
 }
 
 void MeshSizes::build() {
-  for (std::uint32_t e = 0; e < elements(); ++e) elements_.push_back(element(e));
-  nodes_.emplace_back();
-  divide(0, 0, static_cast<std::uint32_t>(elements_.size()));
-}
-
-void MeshSizes::divide(std::uint32_t node, std::uint32_t begin, std::uint32_t end) {
-  Node made{{}, std::numeric_limits<double>::infinity(), begin, end - begin};
-  for (std::uint32_t i = begin; i < end; ++i) {
-    made.box.add(elements_[i].box);
-    made.least = std::min(made.least, elements_[i].least);
-  }
-  if (end - begin > kLeafSize) {
-    const Vec3 extent = made.box.extent();
-    const int axis = extent.x >= extent.y && extent.x >= extent.z ? 0 : extent.y >= extent.z ? 1 : 2;
-    const std::uint32_t middle = begin + (end - begin) / 2;
-    const auto key = [axis](const Element& e) { return std::pair(e.box.center()[axis], e.number); };
-    std::nth_element(elements_.begin() + begin, elements_.begin() + middle, elements_.begin() + end,
-                     [&](const Element& a, const Element& b) { return key(a) < key(b); });
-    made.first = static_cast<std::uint32_t>(nodes_.size());
-    made.count = 0;
-    nodes_.resize(nodes_.size() + 2);
-    divide(made.first, begin, middle);
-    divide(made.first + 1, middle, end);
-  }
-  nodes_[node] = made;
+  std::vector<BoxTree<Bounds>::Item> items;
+  for (std::uint32_t e = 0; e < elements(); ++e) items.push_back({bounds_of(e), e});
+  tree_.emplace(std::move(items));
 }
 
 std::optional<MeshSizes::Place> MeshSizes::place_inside(Vec3 p) const {
   std::optional<Place> place;
   double best = -kRounding;
-  std::array<std::uint32_t, 64> stack;
-  int depth = 0;
-  stack[depth++] = 0;
-  while (depth > 0) {
-    const Node& node = nodes_[stack[--depth]];
-    if (!node.box.contains(p)) continue;
-    if (node.count == 0) {
-      stack[depth++] = node.first + 1;
-      stack[depth++] = node.first;
-    }
-    for (std::uint32_t i = node.first; i < node.first + node.count; ++i) {
-      const std::uint32_t t = elements_[i].number;
-      if (!elements_[i].box.contains(p)) continue;
-      const auto& [a, b, c, d] = mesh_->tets[t];
-      const auto weights = weights_at({mesh_->points[a], mesh_->points[b], mesh_->points[c], mesh_->points[d]}, p);
-      if (!weights) continue;
-      const double least = *std::min_element(weights->begin(), weights->end());
-      if (least <= best) continue;
-      best = least;
-      place = Place{t, mesh_->tets[t], *weights};
-    }
-  }
+  tree_->for_each([&](const Bounds& bounds) { return bounds.box.contains(p); },
+                  [&](const auto& item) {
+                    const Tet& t = mesh_->tets[item.number];
+                    const auto point = [&](std::size_t i) { return mesh_->points[t[i]]; };
+                    const auto weights = weights_at({point(0), point(1), point(2), point(3)}, p);
+                    if (!weights) return;
+                    const double least = *std::min_element(weights->begin(), weights->end());
+                    if (least <= best) return;
+                    best = least;
+                    place = Place{item.number, t, *weights};
+                  });
   if (!place) return place;
   double sum = 0;
   for (double& weight : place->weights) sum += weight = std::max(0.0, weight);
@@ -198,19 +164,8 @@ double MeshSizes::least_in(const Box3& box) const {
   const Vec3 out{around, around, around};
   const Box3 near{box.center() - out, box.center() + out};
   double least = std::numeric_limits<double>::infinity();
-  std::array<std::uint32_t, 64> stack;
-  int depth = 0;
-  stack[depth++] = 0;
-  while (depth > 0) {
-    const Node& node = nodes_[stack[--depth]];
-    if (node.least >= least || !node.box.overlaps(near)) continue;
-    if (node.count == 0) {
-      stack[depth++] = node.first + 1;
-      stack[depth++] = node.first;
-    }
-    for (std::uint32_t i = node.first; i < node.first + node.count; ++i)
-      if (elements_[i].box.overlaps(near)) least = std::min(least, elements_[i].least);
-  }
+  tree_->for_each([&](const Bounds& bounds) { return bounds.least < least && bounds.box.overlaps(near); },
+                  [&](const auto& item) { least = std::min(least, item.bounds.least); });
   return least;
 }
 

@@ -2,10 +2,13 @@
 
 #include <octafront/options.h>
 
+#include "base/geometry/box_tree.h"
 #include "base/geometry/triangle_tree.h"
 
+#include <algorithm>
 #include <array>
 #include <cstdint>
+#include <limits>
 #include <memory>
 #include <optional>
 #include <vector>
@@ -34,25 +37,19 @@ class MeshSizes {
   /// No more than the size at any place of the box.
   double least_in(const Box3& box) const;
   double largest() const { return largest_; }
-  Box3 box() const { return nodes_.front().box; }
+  Box3 box() const { return tree_->bounds().box; }
 
  private:
-  struct Node {
-    Box3 box;
-    double least;
-    std::uint32_t first = 0;  // leaf: its first element; inner: its left child, then the right one
-    std::uint32_t count = 0;  // elements of a leaf; 0: inner
-  };
-  struct Element {
-    Box3 box;
-    double least;
-    std::uint32_t number;
+  struct Bounds {
+    Box3 box{};
+    double least = std::numeric_limits<double>::infinity();  ///< size
+
+    void add(const Bounds& other) { box.add(other.box), least = std::min(least, other.least); }
   };
 
   void build();
-  void divide(std::uint32_t node, std::uint32_t begin, std::uint32_t end);
   std::size_t elements() const { return mesh_->tets.empty() ? mesh_->triangles.size() : mesh_->tets.size(); }
-  Element element(std::uint32_t number) const;
+  Bounds bounds_of(std::uint32_t element) const;
   double size_at_corner(std::uint32_t element, VertexIndex v) const;
   /// In the tetrahedron that holds p, if one does.
   std::optional<Place> place_inside(Vec3 p) const;
@@ -62,8 +59,7 @@ class MeshSizes {
   void make_surface();
 
   std::shared_ptr<const SizeMesh> mesh_;
-  std::vector<Node> nodes_;
-  std::vector<Element> elements_;
+  std::optional<BoxTree<Bounds>> tree_;  ///< of the elements
   std::vector<Triangle> faces_;
   std::vector<std::uint32_t> element_of_face_;
   std::optional<TriangleTree> surface_;

@@ -7,6 +7,7 @@
 #include "base/core/wording.h"
 #include "base/geometry/predicates.h"
 #include "base/geometry/self_intersection.h"
+#include "base/mesh/renumber.h"
 #include "soup/arrangement/divide.h"
 #include "soup/arrangement/snap.h"
 
@@ -201,7 +202,8 @@ class Arranger {
     const auto first_origin = [&](std::uint32_t t) { return soup_.origins[t].front().triangle; };
     std::stable_sort(order.begin(), order.end(),
                      [&](std::uint32_t a, std::uint32_t b) { return first_origin(a) < first_origin(b); });
-    drop_unused_points();
+    // Points of earlier passes that nothing uses any more; the input's stay.
+    drop_unused_points(soup_.points, soup_.triangles, inputs_);
     for (const std::uint32_t t : order) {
       Triangle triangle = soup_.triangles[t];
       const bool turn = soup_.origins[t].front().reversed;
@@ -214,25 +216,6 @@ class Arranger {
     result_.points = std::move(soup_.points);
     result_.new_points = result_.points.size() - inputs_;
     return std::move(result_);
-  }
-
-  /// Points of earlier passes that nothing uses any more; the input's stay.
-  void drop_unused_points() {
-    std::vector<VertexIndex> number(soup_.points.size(), kNone);
-    for (const Triangle& t : soup_.triangles)
-      for (const VertexIndex v : t) number[v] = 0;
-    std::size_t kept = inputs_;
-    for (std::size_t v = 0; v < soup_.points.size(); ++v) {
-      if (v < inputs_) {
-        number[v] = static_cast<VertexIndex>(v);
-      } else if (number[v] == 0) {
-        soup_.points[kept] = soup_.points[v];
-        number[v] = static_cast<VertexIndex>(kept++);
-      }
-    }
-    soup_.points.resize(kept);
-    for (Triangle& t : soup_.triangles)
-      for (VertexIndex& v : t) v = number[v];
   }
 
   [[noreturn]] void give_up(const std::vector<std::array<std::uint32_t, 2>>& pairs) const {

@@ -89,9 +89,7 @@ class Snapper {
         if (has_area(soup_.triangles[t])) edges.push_back(edge_of(soup_.triangles[t], i));
     std::sort(edges.begin(), edges.end());
     edges.erase(std::unique(edges.begin(), edges.end()), edges.end());
-    std::vector<Triangle> flat;
-    for (const auto& [a, b] : edges) flat.push_back({a, b, b});
-    const TriangleTree tree(soup_.points, flat);
+    const TriangleTree tree = tree_of_segments(soup_.points, edges);
     for (const VertexIndex v : vertices_)
       tree.for_each_box_near(box_around(at(v), reach_), [&](std::uint32_t e, const TriangleCorners&) {
         const auto [a, b] = edges[e];

@@ -3,6 +3,7 @@
 #include "base/geometry/measures.h"
 #include "base/geometry/predicates.h"
 #include "base/geometry/self_intersection.h"
+#include "base/mesh/renumber.h"
 
 #include <algorithm>
 #include <array>
@@ -177,16 +178,9 @@ class Dissolving {
     keep(mesh_.sides);
     keep(mesh_.patch);
     keep(mesh_.source);
-    std::vector<VertexIndex> number(mesh_.points.size(), kNone);
+    PointsTaken taken(mesh_.points);
     std::vector<Vec3> used;
-    for (Triangle& t : mesh_.triangles)
-      for (VertexIndex& v : t) {
-        if (number[v] == kNone) {
-          number[v] = static_cast<VertexIndex>(used.size());
-          used.push_back(mesh_.points[v]);
-        }
-        v = number[v];
-      }
+    for (Triangle& t : mesh_.triangles) t = taken.take(t, used);
     mesh_.points = std::move(used);
   }
 

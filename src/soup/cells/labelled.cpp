@@ -2,6 +2,7 @@
 
 #include "base/core/utf8.h"
 #include "base/core/wording.h"
+#include "base/mesh/renumber.h"
 
 #include <algorithm>
 #include <utility>
@@ -110,7 +111,7 @@ Complex complex_of(const Labelled& labelled, const std::function<Face(std::size_
   Complex complex;
   SurfaceMesh& surface = complex.surface;
   const std::vector<std::uint32_t> number = number_regions(labelled, complex);
-  std::vector<VertexIndex> vertex(labelled.arranged.points.size(), kNone);
+  PointsTaken taken(labelled.arranged.points);
   std::uint64_t sheets = 0, vanished = 0;
   for (std::size_t t = 0; t < labelled.arranged.triangles.size(); ++t) {
     const auto [front, back] = labelled.cells.sides_of(t);
@@ -123,14 +124,7 @@ Complex complex_of(const Labelled& labelled, const std::function<Face(std::size_
     vanished += sides[0] == sides[1] && !is_sheet && !embedded;
     if (sides[0] == sides[1] && !is_sheet) continue;
     sheets += is_sheet;
-    Triangle triangle = labelled.arranged.triangles[t];
-    for (VertexIndex& v : triangle) {
-      if (vertex[v] == kNone) {
-        vertex[v] = static_cast<VertexIndex>(surface.points.size());
-        surface.points.push_back(labelled.arranged.points[v]);
-      }
-      v = vertex[v];
-    }
+    Triangle triangle = taken.take(labelled.arranged.triangles[t], surface.points);
     if (sides[1] == kNone) {
       std::swap(triangle[1], triangle[2]);
       std::swap(sides[0], sides[1]);

@@ -46,11 +46,7 @@ class Outline {
       : surface_(surface),
         piece_(piece),
         cosine_(elementary::cos(sharp_angle * std::numbers::pi / 180)),
-        at_(surface.points.size(),
-            [&](const auto& add) {
-              for (std::uint32_t t = 0; t < surface.triangles.size(); ++t)
-                for (const VertexIndex v : surface.triangles[t]) add(v, t);
-            }),
+        at_(rows_at_vertices(surface.points.size(), surface.triangles)),
         normal_(surface.triangles.size()),
         area_(surface.triangles.size()) {
     parallel_for(normal_.size(), [&](std::size_t t) {

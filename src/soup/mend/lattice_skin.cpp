@@ -5,6 +5,7 @@
 #include "base/geometry/measures.h"
 #include "base/geometry/triangle_tree.h"
 #include "base/mesh/features.h"
+#include "base/mesh/renumber.h"
 #include "fill/lattice/cut_lattice.h"
 #include "fill/lattice/lattice_octree.h"
 #include "fill/lattice/manifold.h"
@@ -19,19 +20,12 @@ namespace {
 /// The boundary of a mesh as a surface of its own, with the nearest wall of each triangle.
 LatticeSkin boundary_of(const TetMesh& mesh, const SurfaceMesh& walls, double near) {
   LatticeSkin skin;
-  std::vector<VertexIndex> number(mesh.points.size(), kNone);
+  PointsTaken taken(mesh.points);
   const TriangleTree tree(walls);
-  for (Triangle t : mesh.boundary) {
+  for (const Triangle& t : mesh.boundary) {
     const Vec3 middle = centroid(mesh.points[t[0]], mesh.points[t[1]], mesh.points[t[2]]);
     const TriangleTree::Nearest nearest = tree.nearest(middle);
-    for (VertexIndex& v : t) {
-      if (number[v] == kNone) {
-        number[v] = static_cast<VertexIndex>(skin.surface.points.size());
-        skin.surface.points.push_back(mesh.points[v]);
-      }
-      v = number[v];
-    }
-    skin.surface.triangles.push_back(t);
+    skin.surface.triangles.push_back(taken.take(t, skin.surface.points));
     skin.surface.source.push_back(nearest.triangle);
     skin.is_far.push_back(nearest.squared_distance > near * near);
   }

@@ -163,9 +163,7 @@ class MapMaker {
     for (int end = 0; end < 2; ++end) {
       const std::vector<Edge> edges(lines[static_cast<std::size_t>(1 - end)].edges.begin(),
                                     lines[static_cast<std::size_t>(1 - end)].edges.end());
-      std::vector<Triangle> flat;
-      for (const Edge& e : edges) flat.push_back({e[0], e[1], e[1]});
-      const TriangleTree tree(surface_.points, flat);
+      const TriangleTree tree = tree_of_segments(surface_.points, edges);
       for (const auto& [v, other] : nearest_on_other(k, lines, end)) {
         if (other != kNone) continue;
         const Vec3 p = led(surface_.points[v], k, end);

@@ -2,6 +2,8 @@
 
 #include <octafront/mend.h>
 
+#include "base/mesh/renumber.h"
+
 #include <algorithm>
 #include <string>
 #include <utility>
@@ -28,18 +30,6 @@ void halve(const Divided& d, const FaceKind& kind, Rebuilt& to) {
   const int j = (i + 1) % 3, k = (i + 2) % 3;
   halve({{d.t[i], *middle, d.t[k]}, {std::vector(on.begin(), middle), {}, d.on[k]}}, kind, to);
   halve({{*middle, d.t[j], d.t[k]}, {std::vector(middle + 1, on.end()), d.on[j], {}}}, kind, to);
-}
-
-void drop_unused_points(SurfaceMesh& surface) {
-  std::vector<VertexIndex> number(surface.points.size(), kNone);
-  for (const Triangle& t : surface.triangles)
-    for (const VertexIndex v : t) number[v] = 0;
-  VertexIndex used = 0;
-  for (VertexIndex v = 0; v < number.size(); ++v)
-    if (number[v] != kNone) surface.points[used] = surface.points[v], number[v] = used++;
-  surface.points.resize(used);
-  for (Triangle& t : surface.triangles)
-    for (VertexIndex& v : t) v = number[v];
 }
 
 std::vector<std::uint8_t> patches_on_one_face(const SurfaceMesh& surface, const std::vector<CellFace>& faces) {
@@ -91,7 +81,7 @@ void take(Rebuilt rebuilt, SurfaceMesh& surface) {
   surface.triangles = std::move(rebuilt.triangles);
   surface.patch.clear(), surface.sides.clear();
   for (const FaceKind& kind : rebuilt.kinds) surface.patch.push_back(kind.patch), surface.sides.push_back(kind.sides);
-  drop_unused_points(surface);
+  drop_unused_points(surface.points, surface.triangles);
 }
 
 void name_faces(SurfaceMesh& s, const PeriodicCell& cell) {

@@ -131,10 +131,7 @@ class Keeper {
     std::vector<Vec3> normal;
     for (const Triangle& t : surface_.triangles)
       normal.push_back(normalized(cross(before_[t[1]] - before_[t[0]], before_[t[2]] - before_[t[0]])));
-    const Groups<> at(surface_.points.size(), [&](const auto& add) {
-      for (std::uint32_t t = 0; t < surface_.triangles.size(); ++t)
-        for (const VertexIndex v : surface_.triangles[t]) add(v, t);
-    });
+    const Groups<> at = rows_at_vertices(surface_.points.size(), surface_.triangles);
     for (VertexIndex v = 0; v < surface_.points.size(); ++v) {
       const auto around = at[v];
       for (std::size_t i = 0; i < around.size() && moves_[v]; ++i)

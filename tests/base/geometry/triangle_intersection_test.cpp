@@ -148,22 +148,5 @@ RC_GTEST_PROP(SegmentTriangleHit, AgreesWithRationals, ()) {
   }
 }
 
-RC_GTEST_PROP(SegmentTriangleConflict, AgreesWithRationals, ()) {
-  Choice choice;
-  for (int i = 0; i < kPairs; ++i) {
-    const auto x = choice.points(5);
-    const std::array<Vec3, 3> t{x[0], x[1], x[2]};
-    if (degenerate(t)) continue;
-    RC_ASSERT(segment_triangle_conflict({x[3], x[4]}, {3, 4}, t, {0, 1, 2}) == oracle_segment_meets(x[3], x[4], t));
-    for (VertexIndex corner = 0; corner < 3; ++corner) {
-      if (x[3] == t[corner]) continue;
-      const auto common = testing::intersection_with_triangle({rational(t[corner]), rational(x[3])}, t);
-      const bool more = std::any_of(common.begin(), common.end(), [&](auto& c) { return c != rational(t[corner]); });
-      RC_ASSERT(segment_triangle_conflict({t[corner], x[3]}, {corner, 3}, t, {0, 1, 2}) == more);
-      RC_ASSERT(segment_triangle_conflict({x[3], t[corner]}, {3, corner}, t, {0, 1, 2}) == more);
-    }
-  }
-}
-
 }  // namespace
 }  // namespace octafront

@@ -194,7 +194,7 @@ class DicomParser {
   }
 
   void read_fragments(int depth) {
-    Element pixels{kPixels, {}, true, {}};
+    Element pixels{kPixels, {}, {}};
     for (bool is_table = true;; is_table = false) {
       const Tag item = next_tag();
       const auto size = number<std::uint32_t>(syntax_.big_endian);

@@ -36,8 +36,7 @@ struct Level {
 struct Element {
   Tag id = 0;
   std::string_view value;
-  bool is_encapsulated = false;                  ///< pixels in fragments
-  std::vector<std::string_view> fragments = {};  ///< of those; the table of offsets is left out
+  std::vector<std::string_view> fragments = {};  ///< of pixels; the table of offsets is left out
 };
 
 /// Whether bytes begin as DICOM files do, with the preamble or without.

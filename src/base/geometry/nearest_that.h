@@ -1,6 +1,6 @@
 #pragma once
 
-// The nearest point of those triangles of a tree that fit; trees over points.
+// The nearest point of those triangles of a tree that fit.
 
 #include "base/geometry/measures.h"
 #include "base/geometry/triangle_tree.h"
@@ -8,10 +8,8 @@
 #include <algorithm>
 #include <cmath>
 #include <cstdint>
-#include <span>
-#include <vector>
 
-namespace octafront::adapt {
+namespace octafront {
 
 /// The nearest point within reach of p on a triangle for which fits(triangle, corners); the triangle is kNone if there
 /// is none. `near`: a triangle that may be near, kNone: none is known; makes the search short, and changes no result.
@@ -39,11 +37,4 @@ TriangleTree::Nearest nearest_that(const TriangleTree& tree, Vec3 p, double reac
   return best;
 }
 
-/// A tree over points: its triangles have one of them as all corners, in the order of the list.
-inline TriangleTree tree_of_points(std::span<const Vec3> points, std::span<const VertexIndex> list) {
-  std::vector<Triangle> all;
-  for (const VertexIndex v : list) all.push_back({v, v, v});
-  return {points, all};
-}
-
-}  // namespace octafront::adapt
+}  // namespace octafront
