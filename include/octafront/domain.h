@@ -52,10 +52,10 @@ struct ImageIntake {
   std::array<VoxelRange, 3> crop;     ///< only these voxels along i, j and k
   std::vector<double> resample = {};  ///< spacing of the voxels to work with, > 0, the unit of the file: one, or three
   /// Without `resample`: bands of grey values are taken from coarser voxels, if much of them is a voxel thick and their
-  /// surfaces alone make so many elements: then no other triangles follow them.
+  /// surfaces alone make so many elements, or three times those of `size`: then no other triangles follow them.
   double most_elements = HUGE_VAL;
-  /// Specks of labels are removed (CleanOptions::specks): those below this volume, >= 0. Without a value below an
-  /// element of `size`, if that is given and the image is not repeated.
+  /// Specks of labels and bands are removed (CleanOptions::specks): those below this volume, >= 0. Without a value
+  /// below an element of `size`, if that is given and the image is not repeated.
   std::optional<double> specks = {};
   std::optional<double> size = {};  ///< the edge length that elements will have, in the unit of the file, > 0
   /// Closed surfaces that read_surface() knows, behind those in `regions`: ImageRegions::surfaces.
