@@ -100,6 +100,19 @@ class Jobs(unittest.TestCase):
         self.assertRegex(self.mesh("bar.obj", "--fix", "top", status=2, out="job.msh"), "--job is for abaqus")
         self.assertRegex(self.mesh("rod.obj", "--fix", "side_0=radial", "--fix", "bottom=x", status=2), "share nodes")
 
+    def test_wrong_places_are_refused_before_a_mesh_is_made(self):
+        wrong = {("--fix", "lid"): "--fix: there is no region, patch.*\"low/top\"", ("--fix", "low/top|lid"): None, ("--fix", "lid|low/top"): "there is no",
+                 ("--load", "low=1,2,3"): "--load: there is no patch", ("--pressure", "high/lid=1"): "--pressure: there is no", ("--couple", "R=lid"): "--couple: there",
+                 ("--pretension", "bolt=1"): "--pretension: there is no region.*\"high\"", ("--friction", "low|hig=.1"): r"there is no opened contact.*\"low_high/top .low.high.",
+                 ("--fix", "box:1,2"): "has 2 numbers", ("--fix", "patches:low/top,lid"): "there is no region",
+                 ("--load", "REF=1,2,3", "--couple", "REF=low/top"): None, ("--friction", "low_high/top=.1"): None, ("--fix", "foot", "--group", "foot=low/bottom"): None}
+        for options, said in wrong.items():
+            told = self.mesh("low.obj high.obj", "--contacts", "split", "--dry-run", *options, status=0 if said is None else 2)
+            self.assertRegex(told, said or "tetrahedra")
+        (self.dir / "job.json").write_text('{"materials": {"lowe": {"E": 1}}}')
+        self.assertRegex(self.mesh("low.obj high.obj", "--dry-run", "--job", self.dir / "job.json", status=2), "--materials: there is no region")
+        self.assertRegex(self.mesh("low.obj high.obj", "--dry-run", "--friction", "low|high=.1", status=2), "there is none; open contacts by --contacts split")
+
     def test_nastran_has_the_same_job(self):
         (self.dir / "job.json").write_text('{"gravity": [0, 0, -9810], "couple": {"REF": "bottom"}, "fix": {"REF": "xyzr"}}')
         self.mesh("rod.obj", "--job", self.dir / "job.json", "--fix", "side_1=axial", "--load", "top=100,50,-3", "--pressure", "side_0=2",
