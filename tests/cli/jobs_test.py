@@ -313,7 +313,7 @@ class Jobs(unittest.TestCase):
             calls = aster((self.dir / "job.comm").read_text())
             given = {key: entries for charge in calls["AFFE_CHAR_MECA"] for key, entries in charge.items()}
             force, = given["FORCE_FACE"]
-            self.expect([force[axis] * 12 * 25 * math.sin(math.pi / 12) for axis in ("FX", "FY", "FZ")], [100, 50, -3])
+            self.expect([force[axis] / force["FX"] for axis in ("FX", "FY", "FZ")], [1, .5, -.03])
             self.assertEqual(force["GROUP_MA"], "top")
             self.assertEqual(given["PRES_REP"], ({"GROUP_MA": "side_0", "PRES": 2},))
             self.assertEqual(given["FORCE_NODALE"], ({"GROUP_NO": "HOOK", "FY": 7},))
@@ -326,6 +326,9 @@ class Jobs(unittest.TestCase):
             self.assertEqual(len(calls["MECA_STATIQUE"][0]["EXCIT"]), len(calls["AFFE_CHAR_MECA"]))
             self.assertEqual({a["GROUP_NO"] for a in calls["POST_RELEVE_T"][0]["ACTION"]}, {"REF", "side_1"})
             self.assertIn("F mmed job.med D 20\n", (self.dir / "job.export").read_text())
+            self.mesh("bar.obj", "--order", order, "--fix", "bottom", "--load", "top=100,50,-3", out="job.med")
+            force, = aster((self.dir / "job.comm").read_text())["AFFE_CHAR_MECA"][1]["FORCE_FACE"]
+            self.expect([98 * force[axis] for axis in ("FX", "FY", "FZ")], [100, 50, -3])
 
     def test_code_aster_ties_what_nothing_else_holds(self):
         self.mesh("low.obj high.obj", "--contacts", "split", "--fix", "low/top", "--couple", "REF=low/bottom", "--fix", "REF", out="job.med")
