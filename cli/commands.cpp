@@ -158,6 +158,7 @@ auto run_on_input(Session& session, const Generator& generator) {
   Domain domain;
   together(session.context().ranks, "input", [&] { domain = open_input(session, intake_for(options, a.intake)); });
   add_sizes_of_head(a, domain, options);
+  if (a.writing.job) check_job(*a.writing.job, expected_place_names(domain, options));
   try {
     if (!a.page.empty()) find_repairs(session, domain.surface);
     return telling_what_was_made(session, [&] { return generator(domain, options, session.context()); });
@@ -192,6 +193,14 @@ void finish_run(Session& session, const TetMesh& mesh, const SizeField* sizes) {
 std::filesystem::path file_at_fault(const Arguments& a, const SurfaceMesh& surface) {
   const bool is_surface = !a.surface.empty() && !find_defects(repair_surface(surface)).clean();
   return is_surface ? a.surface : a.input;
+}
+
+/// What a job names is looked for before the work; the mesh will have what it has, and its further groups.
+void check_job_on(const Arguments& a, const TetMesh& mesh) {
+  if (!a.writing.job) return;
+  PlaceNames there = place_names(mesh);
+  for (const std::string& group : a.options.groups) there.sets.push_back(group_rule(group).name);
+  check_job(*a.writing.job, there);
 }
 
 /// They stand with the file that has them, too.
@@ -262,6 +271,7 @@ void run_improve(Session& session) {
   check_page_target(a.page);
   check_options(a.options);
   const TetMesh mesh = read_mesh_input(session);
+  check_job_on(a, mesh);
   SurfaceMesh surface;
   if (!a.surface.empty()) surface = read_surface(a.surface.string(), session.context()).surface;
   const auto improved = [&] {
@@ -392,6 +402,7 @@ void run_adapt(Session& session) {
     return adapt_surface_input(session);
   const Options options = checked_options_of(session);
   const TetMesh mesh = read_mesh_input(session);
+  check_job_on(a, mesh);
   const std::optional<MetricMesh> metric = metric_asked_for(session, mesh);
   const std::vector<MeshField> fields = fields_to_carry(session, mesh);
   const std::optional<Domain> ground = open_ground(session);

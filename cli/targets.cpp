@@ -68,6 +68,8 @@ void check_pipe(const std::filesystem::path& file, const WriteOptions& options) 
   const std::string& format = options.format;
   check_format(file, format);
   if (options.split_files) throw OptionError("--split-files makes several files: they cannot go to standard output");
+  if (options.job && format == "med")
+    throw OptionError("a job for code_aster is several files: it cannot go to standard output");
   for (const FormatInfo& info : known_formats())
     if (info.writes_mesh && info.name == format && !info.one_file)
       throw OptionError(fmt::format("{} is written to several files: it cannot go to standard output", info.title));

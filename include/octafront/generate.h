@@ -1,6 +1,7 @@
 #pragma once
 
 #include <octafront/domain.h>
+#include <octafront/named_groups.h>
 #include <octafront/options.h>
 #include <octafront/quality.h>
 #include <octafront/repair.h>
@@ -57,6 +58,10 @@ struct SizeResult {
   Report report;
 };
 SizeResult generate_sizes(const Domain& domain, const Options& options = {}, const RunContext& context = {});
+
+/// What options that take a place may name in the mesh that generate() would make, as far as it is known before: of
+/// curves those that stand inside, but not where patches will meet.
+PlaceNames expected_place_names(const Domain& domain, const Options& options = {});
 
 /// Throws OptionError with a sentence if the options contradict each other or lie outside their ranges.
 void check_options(const Options& options);

@@ -59,6 +59,7 @@ std::string add_placed_sets(TetMesh& mesh, std::span<const PlacedSet> sets);
 /// named.
 struct PlaceNames {
   std::vector<std::string> regions, patches, curves, sets;
+  std::vector<std::string> contacts = {};  ///< the patches that are sides of opened ones
 };
 PlaceNames place_names(const SurfaceMesh& surface);
 PlaceNames place_names(const TetMesh& mesh);

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <octafront/named_groups.h>
 #include <octafront/vec.h>
 
 #include <optional>
@@ -87,6 +88,10 @@ void add_to_job(SolverJob& job, const std::string& text, const std::string& name
 /// The same from a file. Throws InputError where it cannot be read.
 /// `key`: the file is what stands under this key.
 void add_file_to_job(SolverJob& job, const std::string& file, const std::string& key = {});
+
+/// Refuses names that a mesh with these places will not have, before it is made (expected_place_names() of
+/// octafront/generate.h). Throws OptionError, which lists those that there are.
+void check_job(const SolverJob& job, const PlaceNames& there);
 
 /// The places that are meant by what they are like, "largest plane at z min": of CAD they are known to generate()
 /// alone, as Options::groups "PLACE=PLACE".

@@ -299,7 +299,7 @@ class Mesh:
         curves that are beams, too, "rod,wire" (both Abaqus). `parts`: divided into so many, for programs on several
         processes (.pvtu, .vtkhdf, .msh, a folder polyMesh), along a curve or by `partitioner` "metis"; `split_files`: a .msh
         for each. `job`: a dict, or a file of it, of materials, supports and loads that make the file a job of a solver
-        (.inp; docs/use/jobs.md). `deck`: around CASE/constant/polyMesh the rest of a case for OpenFOAM's simpleFoam, by the
+        (.inp, .bdf, .cdb, .med; docs/use/jobs.md). `deck`: around CASE/constant/polyMesh the rest of a case for OpenFOAM's simpleFoam, by the
         `speed` at the inlet, m/s, of a `fluid`, "air", "water" or its kinematic viscosity. Returns what a user should know, as
         sentences: what the format cannot hold. An older file stays whole if that fails: OutputError; OptionError for what the
         format cannot do."""

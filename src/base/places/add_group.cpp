@@ -57,17 +57,6 @@ bool add_named(TetMesh& mesh, const std::string& name, const Place& place, std::
   }
 }
 
-/// What a division by angle or split_patches() calls a patch.
-bool is_made_later(const std::string& name) {
-  const bool is_number = name.find_first_not_of("0123456789") == std::string::npos;
-  return is_number || name.starts_with("patch_") || name.ends_with("_plus") || name.ends_with("_minus");
-}
-
-/// "seat" of "seat (A|B)", a side of a contact that is opened.
-std::string without_sides(const std::string& name) {
-  return other_sides(name).empty() || !name.ends_with(')') ? name : name.substr(0, name.rfind(" ("));
-}
-
 }  // namespace
 
 GroupRule group_rule(const std::string& text) {

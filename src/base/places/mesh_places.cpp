@@ -124,6 +124,9 @@ PlaceNames place_names(const TetMesh& mesh) {
   std::set<std::string> sets;
   for (const NamedSet& set : mesh.sets) sets.insert(set.name);
   names.sets.assign(sets.begin(), sets.end());
+  for (const OpenedContact& contact : mesh.opened_contacts)
+    for (const std::uint32_t side : {contact.first, contact.second})
+      names.contacts.push_back(patch_label(mesh.patch_names, side));
   return names;
 }
 

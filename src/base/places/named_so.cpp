@@ -82,6 +82,17 @@ std::vector<std::string> other_sides(const std::string& patch) {
   return others;
 }
 
+bool is_made_later(const std::string& name) {
+  const std::size_t dot = name.rfind('.');
+  if (is_number(name) || (dot != name.npos && is_number(std::string_view(name).substr(dot + 1)))) return true;
+  return name.starts_with("patch_") || name.starts_with("body_") || name.starts_with("curve_") ||
+         name.ends_with("_plus") || name.ends_with("_minus");
+}
+
+std::string without_sides(const std::string& name) {
+  return other_sides(name).empty() || !name.ends_with(')') ? name : name.substr(0, name.rfind(" ("));
+}
+
 std::string alone(const std::vector<std::string>& names, const std::string& name) {
   return std::ranges::any_of(names, [&](const std::string& n) { return is_piece(n, name); }) ? name + "#1" : name;
 }

@@ -59,6 +59,12 @@ std::vector<std::uint32_t> patches_called(const std::vector<std::string>& names,
 std::vector<std::uint32_t> patches_called(std::string_view option, const std::vector<std::string>& names,
                                           const std::vector<char>& is_there, const std::string& name);
 
+/// Whether a division by angle or split_patches() calls a patch so, or what has no name: "3", "patch_3", "wall.2",
+/// "glue_plus", "body_2".
+bool is_made_later(const std::string& name);
+/// "seat" of "seat (A|B)", a side of a contact that is opened; else the name.
+std::string without_sides(const std::string& name);
+
 /// Names of one kind of part, "region", "patch", "curve" or "set".
 struct NamesOfKind {
   std::string_view kind;

@@ -205,9 +205,9 @@ constexpr std::array kFormats{
          told_nastran, read_nastran),
     read(with_wedges(mesh("unv", "I-deas universal", ".unv", kAll, "groups (dataset 2477); 17 digits", write_unv)),
          told_unv, read_unv),
-    read(with_fields(
+    read(with_jobs(with_fields(
              with_wedges(mesh("med", "MED 4", ".med", binary(kAll), "families and groups; needs HDF5", kWriteMed)),
-             false),
+             false)),
          told_hdf5, kReadMed),
     read(with_fields(with_wedges(of_several_files(mesh("xdmf", "XDMF", ".xdmf", binary(kAll),
                                                        "with values in files .h5 beside; needs HDF5", kWriteXdmf))),
@@ -216,7 +216,7 @@ constexpr std::array kFormats{
     with_fields(with_wedges(mesh("exodus", "Exodus II", ".exo .e .ex2", binary(kSolver),
                                  "blocks, node, side and element sets", write_exodus)),
                 false),
-    with_wedges(mesh("ansys", "Ansys archive", ".cdb", kAnsys, "components; 17 digits", write_ansys)),
+    with_jobs(with_wedges(mesh("ansys", "Ansys archive", ".cdb", kAnsys, "components; 17 digits", write_ansys))),
     with_linear_wedges(mesh("lsdyna", "LS-DYNA", ".k .key", kSolver,
                             "parts and sets; numbers of at most 16 characters (9 to 15 digits)", write_lsdyna)),
     with_wedges(mesh("febio", "FEBio 4", ".feb", kAll, "Elements, Surface, Edge, NodeSet, ElementSet", write_febio)),

@@ -88,6 +88,9 @@ void check_options(const io::Format& format, const WriteOptions& options) {
                                   names_that([](const io::Format& f) { return f.info.holds.jobs; })));
   if (options.job && !options.job->pretensions.empty() && options.cohesive)
     throw OptionError("`pretension` opens sections that are no cracks: it does not go with `cohesive`");
+  if (options.job && !options.materials.empty() && !format.info.holds.cohesive)
+    throw OptionError(
+        fmt::format("materials by bins are for Abaqus: a job for {} has one of each part", format.info.title));
   if (options.job && (options.cells_only || options.parts > 0))
     throw OptionError("a job needs the faces, and the mesh as one: `job` goes with no `cells_only` and `parts`");
   const bool is_of_surfaces = format.write_mesh == nullptr && format.write_parts == nullptr;

@@ -444,6 +444,18 @@ bool JobPlan::has_loads() const {
          std::ranges::any_of(couplings, [](const Coupling& c) { return c.force.has_value(); });
 }
 
+Vec3 as_node_has_it(const JobPlan& plan, const MeshParts& mesh, VertexIndex node, Vec3 force) {
+  const auto at = plan.systems.find(node);
+  if (at == plan.systems.end()) return force;
+  return in_system_of(*plan.fixes[at->second].cylinder, mesh.mesh().points[node], force);
+}
+
+void refuse_pressure_on_wedges(const MeshParts& mesh, const JobPlan& plan, std::string_view card) {
+  if (!mesh.wide_cells().empty() && !plan.pressures.empty())
+    throw OptionError(fmt::format(
+        "`pressure`: {} is written on tetrahedra, not on the wedges of layers; give them up by `as_tets`", card));
+}
+
 bool JobPlan::slides() const {
   return std::ranges::any_of(contacts, [](const Contact& c) { return c.friction.has_value(); });
 }

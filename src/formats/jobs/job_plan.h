@@ -14,6 +14,7 @@
 #include <map>
 #include <optional>
 #include <string>
+#include <string_view>
 #include <utility>
 #include <vector>
 
@@ -99,6 +100,12 @@ JobPlan plan_job(MeshOutput& out, const MeshParts& mesh, const SolverJob& job,
 
 /// The shares of nodes in a force on faces.
 NodeShares shares_of(const MeshParts& mesh, const Part& part);
+/// The area of faces, as these shares have it.
+double area_of(const MeshParts& mesh, const Part& part);
+/// A force as a node has it, where a cylinder turns its directions.
+Vec3 as_node_has_it(const JobPlan& plan, const MeshParts& mesh, VertexIndex node, Vec3 force);
+/// Where pressures are written on tetrahedra alone, by this `card`. Throws OptionError.
+void refuse_pressure_on_wedges(const MeshParts& mesh, const JobPlan& plan, std::string_view card);
 
 /// Opens a bolt, as near to the middle of its largest cylinder as a section leaves nodes of contacts and of other
 /// regions alone. Throws OptionError.

@@ -48,6 +48,7 @@ class FaceShares {
     area_ += area;
   }
 
+  double area() const { return area_; }
   NodeShares all() const {
     constexpr double kRounding = 1e-12;  // corners of straight triangles of second order have none
     NodeShares shares;
@@ -85,14 +86,22 @@ class FaceShares {
   double area_ = 0;
 };
 
-}  // namespace
-
-NodeShares shares_of(const MeshParts& mesh, const Part& part) {
+FaceShares shares_on(const MeshParts& mesh, const Part& part) {
   const MixedCells cells(mesh);
   FaceShares shares(mesh);
   std::array<VertexIndex, 8> room;
   for (const std::uint32_t f : cells.members(part)) shares.add(cells.face_nodes(f, room));
-  return shares.all();
+  return shares;
+}
+
+}  // namespace
+
+NodeShares shares_of(const MeshParts& mesh, const Part& part) {
+  return shares_on(mesh, part).all();
+}
+
+double area_of(const MeshParts& mesh, const Part& part) {
+  return shares_on(mesh, part).area();
 }
 
 }  // namespace octafront::io

@@ -174,19 +174,13 @@ class AbaqusJob {
       text_.line("** {:.9g}, {:.9g}, {:.9g} ON {}", load.force.x, load.force.y, load.force.z, name(load.part));
     if (!plan_.forces.empty()) text_ << "*CLOAD\n";
     for (const auto& [node, sum] : plan_.forces) {
-      const Vec3 force = as_node_has_it(node, sum);
+      const Vec3 force = as_node_has_it(plan_, mesh_, node, sum);
       for (int i = 0; i < 3; ++i) {
         if (force[i] == 0) continue;
         text_ << node + 1 << ", " << i + 1 << ", ";
         text_.within(20, force[i]) << '\n';
       }
     }
-  }
-  /// Where a cylinder turns its directions.
-  Vec3 as_node_has_it(VertexIndex node, Vec3 force) const {
-    const auto at = plan_.systems.find(node);
-    if (at == plan_.systems.end()) return force;
-    return in_system_of(*plan_.fixes[at->second].cylinder, mesh_.mesh().points[node], force);
   }
   void write_gravity(Vec3 g) {
     const Vec3 along = normalized(g);

@@ -147,9 +147,7 @@ class NastranJob {
 void write_nastran_control(TextWriter& text, const MeshParts& mesh, const JobPlan& plan) {
   if (!plan.contacts.empty() || !plan.pretensions.empty())
     throw OptionError("Nastrans differ in contacts and bolts, so a job for them has none: let parts share their nodes");
-  if (!mesh.wide_cells().empty() && !plan.pressures.empty())
-    throw OptionError(
-        "`pressure`: PLOAD4 is written on tetrahedra, not on the wedges of layers; give them up by `as_tets`");
+  refuse_pressure_on_wedges(mesh, plan, "PLOAD4");
   text << "SOL 101\nCEND\nTITLE = JOB BY OCTAFRONT\n";
   text.line("SPC = {}", kSupports);
   if (plan.has_loads()) text.line("LOAD = {}", load_of(plan));

@@ -4,6 +4,7 @@
 
 #include "formats/containers/text_writer.h"
 #include "formats/parts/mixed_cells.h"
+#include "formats/write/ansys_job.h"
 #include "formats/write/writers.h"
 
 #include <array>
@@ -28,10 +29,13 @@ class AnsysWriter {
       : text_(out.file()),
         mesh_(mesh),
         cells_(mesh),
-        names_(legal_names(out, mesh, {.longest = kLongestName, .also = "_", .upper_case = true})) {}
+        names_(legal_names(out, mesh, {.longest = kLongestName, .also = "_", .upper_case = true})),
+        job_(out.job()) {}
 
   void write() {
-    text_ << "/COM,Mesh by octafront: materials and what loads it are for you to add\n/PREP7\n";
+    text_ << (job_ != nullptr ? "/COM,Job by octafront\n"
+                              : "/COM,Mesh by octafront: materials and what loads it are for you to add\n")
+          << "/PREP7\n";
     for (std::size_t p = 0; p < names_.size(); ++p)
       text_.line("/COM,NAME {} IS \"{}\"", names_[p], one_line(mesh_.parts()[p].name));
     text_.line("ET,1,{}", mesh_.second_order() ? 187 : 285);
@@ -46,6 +50,7 @@ class AnsysWriter {
     for (std::size_t c = 0; c < cells_.cells(); ++c) write_element(c);
     text_ << "        -1\n";
     for (std::size_t p = 0; p < names_.size(); ++p) write_component(mesh_.parts()[p], names_[p]);
+    if (job_ != nullptr) write_ansys_job(text_, mesh_, cells_, *job_, names_);
     text_ << "FINISH\n";
   }
 
@@ -106,6 +111,7 @@ class AnsysWriter {
   const MeshParts& mesh_;
   MixedCells cells_;
   std::vector<std::string> names_;
+  const JobPlan* job_;  ///< null: the mesh alone
 };
 
 }  // namespace

@@ -8,6 +8,7 @@
 #include "formats/containers/hdf5_file.h"
 #include "formats/parts/field_columns.h"
 #include "formats/parts/mixed_cells.h"
+#include "formats/write/aster_job.h"
 #include "formats/write/writers.h"
 
 #include <algorithm>
@@ -39,11 +40,16 @@ constexpr std::array<std::uint8_t, 10> kMedTet{0, 2, 1, 3, 6, 5, 4, 7, 9, 8};
 
 class MedWriter {
  public:
-  MedWriter(MeshOutput& out, const MeshParts& mesh)
+  /// `names`: of groups and further nodes of a job; null: the mesh alone.
+  MedWriter(MeshOutput& out, const MeshParts& mesh, const AsterNames* names)
       : file_(out.path_for_library(), out.target().string(), out.context(), true),
         mesh_(mesh),
         cells_(mesh),
-        fields_(fields_of(out)) {}
+        fields_(fields_of(out)) {
+    if (names != nullptr) names_ = names->parts, points_ = names->points;
+    for (const Part& part : mesh.parts())
+      if (names == nullptr) names_.push_back(groups_.fitting(one_line(part.name)));
+  }
 
   void write() {
     file_.group("/INFOS_GENERALES");
@@ -95,11 +101,14 @@ class MedWriter {
     file_.attribute(nodes, "CGT", 1);
     file_.attribute(nodes, "CGS", 1);
     file_.attribute(nodes, "PFL", "MED_NO_PROFILE_INTERNAL");
-    const std::uint64_t n = mesh_.points();
-    values<double>(nodes + "/COO", 3, n, [&](std::uint64_t component, std::uint64_t v) {
-      return mesh_.mesh().points[v][static_cast<int>(component)];
+    values<double>(nodes + "/COO", 3, nodes_in_all(), [&](std::uint64_t component, std::uint64_t v) {
+      const std::size_t own = mesh_.points();
+      return (v < own ? mesh_.mesh().points[v] : points_[v - own].at)[static_cast<int>(component)];
     });
   }
+
+  /// With reference points.
+  std::uint64_t nodes_in_all() const { return mesh_.points() + points_.size(); }
 
   /// A dataset component by component, with the attributes that all have.
   template <class T, class ValueAt>
@@ -118,26 +127,33 @@ class MedWriter {
     file_.group(kFamilies + "/FAMILLE_ZERO");
     file_.attribute(kFamilies + "/FAMILLE_ZERO", "NUM", 0);
     const Combinations of_nodes = combinations(mesh_, Kind::kNodes);
-    if (!of_nodes.parts.empty()) {
+    if (const std::size_t families = of_nodes.parts.size(); families + points_.size() > 0) {
       file_.group(kFamilies + "/NOEUD");
-      for (std::size_t c = 0; c < of_nodes.parts.size(); ++c)
-        write_family(kFamilies + "/NOEUD", static_cast<std::int32_t>(c) + 1, of_nodes.parts[c]);
-      values<std::int32_t>(kStep + "/NOE/FAM", 1, mesh_.points(), [&](std::uint64_t, std::uint64_t v) {
+      for (std::size_t c = 0; c < families; ++c)
+        write_family(kFamilies + "/NOEUD", static_cast<std::int32_t>(c) + 1, names_of(of_nodes.parts[c]));
+      for (std::size_t p = 0; p < points_.size(); ++p)
+        write_family(kFamilies + "/NOEUD", static_cast<std::int32_t>(families + p) + 1, {points_[p].name});
+      values<std::int32_t>(kStep + "/NOE/FAM", 1, nodes_in_all(), [&](std::uint64_t, std::uint64_t v) {
+        if (v >= mesh_.points()) return static_cast<std::int32_t>(families + v - mesh_.points()) + 1;
         return of_nodes.of[v] == kNone ? 0 : static_cast<std::int32_t>(of_nodes.of[v]) + 1;
       });
     }
     file_.group(kFamilies + "/ELEME");
   }
 
-  void write_family(const std::string& group, std::int32_t number, const std::vector<std::uint32_t>& parts) {
+  std::vector<std::string> names_of(const std::vector<std::uint32_t>& parts) const {
+    std::vector<std::string> names;
+    for (const std::uint32_t p : parts) names.push_back(names_[p]);
+    return names;
+  }
+
+  void write_family(const std::string& group, std::int32_t number, const std::vector<std::string>& names) {
     // Names of families must not have the "/" of HDF5's paths.
     const std::string family = group + fmt::format("/FAM_{}", number);
     file_.group(family);
     file_.attribute(family, "NUM", number);
     file_.group(family + "/GRO");
-    file_.attribute(family + "/GRO", "NBR", static_cast<std::int32_t>(parts.size()));
-    std::vector<std::string> names;
-    for (const std::uint32_t p : parts) names.push_back(groups_.fitting(one_line(mesh_.parts()[p].name)));
+    file_.attribute(family + "/GRO", "NBR", static_cast<std::int32_t>(names.size()));
     file_.texts(family + "/GRO/NOM", names, kLongestGroup);
   }
 
@@ -149,7 +165,7 @@ class MedWriter {
   };
   Families families_of(Kind kind) {
     Families families{combinations(mesh_, kind), next_family_};
-    for (const auto& parts : families.of.parts) write_family(kFamilies + "/ELEME", next_family_--, parts);
+    for (const auto& parts : families.of.parts) write_family(kFamilies + "/ELEME", next_family_--, names_of(parts));
     return families;
   }
 
@@ -273,6 +289,8 @@ class MedWriter {
   MixedCells cells_;
   std::vector<MedField> fields_;
   ShortNames groups_{kLongestGroup};
+  std::vector<std::string> names_;  ///< of the groups that parts are
+  std::vector<AsterNames::Point> points_;
   std::int32_t next_family_ = -1;
 };
 
@@ -282,7 +300,12 @@ void write_med(MeshOutput& out, const MeshParts& mesh) {
   constexpr std::size_t kMost = std::numeric_limits<std::int32_t>::max();
   if (mesh.points() > kMost || mesh.tets() > kMost)
     throw OutputError(out.target().string() + ": MED files have 32-bit numbers, too few for this mesh; write .vtu");
-  MedWriter(out, mesh).write();
+  if (out.job() == nullptr) return MedWriter(out, mesh, nullptr).write();
+  const AsterNames names = aster_names(out, mesh, *out.job());
+  if (!names.points.empty() && !out.fields().empty())
+    throw OptionError("`couple`: reference points have no values of fields; write them to another file");
+  MedWriter(out, mesh, &names).write();
+  write_aster_job(out, mesh, *out.job(), names);
 }
 
 }  // namespace octafront::io

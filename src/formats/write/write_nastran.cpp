@@ -2,8 +2,6 @@
 // CTRIA3/CTRIA6 (CQUAD4/CQUAD8) of a PSHELL without material, numbered behind the solids; curves, as their nodes, and
 // sets are SETs of the case control. Names are comments: "$ NAME PSOLID 1 "left part"".
 
-#include <octafront/error.h>
-
 #include "formats/containers/text_writer.h"
 #include "formats/parts/mixed_cells.h"
 #include "formats/write/nastran_job.h"
@@ -143,8 +141,6 @@ class NastranWriter {
 }  // namespace
 
 void write_nastran(MeshOutput& out, const MeshParts& mesh) {
-  if (out.job() != nullptr && !out.options().materials.empty())
-    throw OptionError("materials by bins are for Abaqus: a job for Nastran has one of each part");
   NastranWriter(out, mesh).write();
 }
 

@@ -32,18 +32,10 @@ struct Meant {
   std::vector<Vec3> points;
 };
 
-/// The surface as it is meshed: where solids could not be given common faces each pair has patches of its own.
-SurfaceMesh divided(SurfaceMesh surface) {
-  if (is_complex(surface)) divide_by_sides(surface);
-  return surface;
-}
-
 /// Refuses a group by patches that the mesh will not have.
 void check_group_of(const Domain& domain, const GroupRule& rule) {
   SurfaceMesh patches;
-  patches.patch_names = patches_of_parts(*domain.geometry).names;
-  const std::vector<std::string> further = divided(domain.surface).patch_names;
-  patches.patch_names.insert(patches.patch_names.end(), further.begin(), further.end());
+  patches.patch_names = expected_place_names(domain).patches;
   patches.triangles.resize(patches.patch_names.size());
   for (std::uint32_t p = 0; p < patches.triangles.size(); ++p) patches.patch.push_back(p);
   check_group(patches, rule);
@@ -164,6 +156,11 @@ void take_sizes(const PlacesOfGeometry& places, SizeOptions& sizes) {
 }
 
 }  // namespace
+
+SurfaceMesh divided(SurfaceMesh surface) {
+  if (is_complex(surface)) divide_by_sides(surface);
+  return surface;
+}
 
 Options options_for_geometry(const Domain& domain, Options options) {
   if (!options.surface.feature_angle) options.surface.feature_angle = kAngleWithinFace;

@@ -17,6 +17,9 @@ Options options_for_geometry(const Domain& domain, Options options);
 /// Of a body in a wind tunnel its sizes, layers on it, and the Reynolds number of a flow of given speed.
 Options options_for_flow(const Domain& domain, Options options);
 
+/// The surface as it is meshed: where solids could not be given common faces each pair has patches of its own.
+SurfaceMesh divided(SurfaceMesh surface);
+
 /// The names of the patches that have a triangle: of a file whose solids are meshed one by one not all do.
 std::set<std::string> names_with_triangles(const SurfaceMesh& surface);
 

@@ -104,6 +104,26 @@ TEST_F(CadFiles, AMeshHasThePatchesAndCurvesThatTheFileIsSaidToHave) {
             std::set<std::string>(info.edges.begin(), info.edges.end()));
 }
 
+TEST_F(CadFiles, WhatAMeshWillHaveIsKnownBefore) {
+  Options options = of_size(5);
+  options.groups = {"largest plane at z min=largest plane at z min", "smallest torus=smallest torus"};
+  IntakeOptions intake;
+  intake.contacts = "split";
+  const PlaceNames expected = expected_place_names(open_domain({kAssembly}, intake_for(options, intake)), options),
+                   made = place_names(meshed(kAssembly, options, intake).mesh);
+  const auto expects = [](const std::vector<std::string>& names, const std::string& name) {
+    return std::ranges::find(names, name) != names.end();
+  };
+  EXPECT_EQ(expected.regions, made.regions);
+  const auto in_order = [](const std::vector<std::string>& names) {
+    return std::set<std::string>(names.begin(), names.end());
+  };
+  EXPECT_EQ(in_order(expected.sets), in_order(made.sets));
+  EXPECT_EQ(in_order(expected.contacts), in_order(made.contacts));
+  for (const std::string& patch : made.patches)
+    EXPECT_TRUE(expects(expected.patches, patch) || expects(expected.contacts, patch)) << patch;
+}
+
 TEST_F(CadFiles, PartsThatComeApartKeepTheirVolumesNamesAndSets) {
   Options options = of_size(7);
   options.order = 2;
