@@ -100,9 +100,9 @@ JobPlan plan_job(MeshOutput& out, const MeshParts& mesh, const SolverJob& job,
 /// The shares of nodes in a force on faces.
 NodeShares shares_of(const MeshParts& mesh, const Part& part);
 
-/// Opens a bolt, as near to the middle of its largest cylinder as a section leaves nodes of contacts and of other
+/// Opens a bolt, as near to the middle of its largest cylinder as a section leaves nodes of these patches and of other
 /// regions alone. Throws OptionError.
-BoltSection open_bolt(TetMesh& mesh, std::uint32_t region);
+BoltSection open_bolt(TetMesh& mesh, std::uint32_t region, const std::vector<std::uint32_t>& tied);
 /// The triangles of a part of faces.
 std::vector<std::array<Vec3, 3>> triangles_of(const MeshParts& mesh, const Part& part);
 
