@@ -182,7 +182,7 @@ TEST(Tunnel, ADeckIsACaseAndWritesOverNone) {
   const std::string text = text_of("system/controlDict");
   EXPECT_THAT(text, HasSubstr("patches (wall)"));
   EXPECT_THAT(text, HasSubstr("magUInf 20;"));
-  EXPECT_THAT(text, HasSubstr("lRef 0.01;"));
+  EXPECT_THAT(text, HasSubstr("lRef 0.0198"));
   EXPECT_THAT(text_of("constant/polyMesh/points"), HasSubstr("(-0.05 -0.05 -0.05)"));
   EXPECT_THROW(check_mesh_target(target, how), OutputError);
   how.deck = false;
