@@ -1,5 +1,5 @@
-// Writes samples/bracket.step and samples/assembly.step: octafront_cad_samples FOLDER. They say the same every time,
-// but for the order of colours, which OpenCASCADE takes from where things lie in memory.
+// Writes samples/bracket.step, samples/assembly.step and samples/bend.step: octafront_cad_samples FOLDER. They say the
+// same every time, but for the order of colours, which OpenCASCADE takes from where things lie in memory.
 
 #include <APIHeaderSection_MakeHeader.hxx>
 #include <BRepAlgoAPI_Cut.hxx>
@@ -13,6 +13,7 @@
 #include <BRepPrimAPI_MakeBox.hxx>
 #include <BRepPrimAPI_MakeCylinder.hxx>
 #include <BRepPrimAPI_MakePrism.hxx>
+#include <BRepPrimAPI_MakeRevol.hxx>
 #include <IFSelect_ReturnStatus.hxx>
 #include <Interface_Static.hxx>
 #include <Message.hxx>
@@ -247,6 +248,27 @@ void write_assembly(const std::string& file) {
   document.write(file, "bolted bracket");
 }
 
+/// What flows in a pipe: along x, by a quarter of a turn, along z.
+void write_bend(const std::string& file) {
+  constexpr double kRadius = 10, kTurn = 40, kBefore = 40, kBehind = 80;
+  const gp_Ax2 start(gp_Pnt(-kBefore, 0, 0), gp_Dir(1, 0, 0)), end(gp_Pnt(kTurn, 0, kTurn), gp_Dir(0, 0, 1));
+  const TopoDS_Edge rim = BRepBuilderAPI_MakeEdge(gp_Circ(gp_Ax2(gp_Pnt(), gp_Dir(1, 0, 0)), kRadius));
+  const TopoDS_Face disc = BRepBuilderAPI_MakeFace(BRepBuilderAPI_MakeWire(rim).Wire());
+  const TopoDS_Shape turn = BRepPrimAPI_MakeRevol(disc, gp_Ax1(gp_Pnt(0, 0, kTurn), gp_Dir(0, -1, 0)), M_PI / 2);
+  TopoDS_Shape pipe = BRepAlgoAPI_Fuse(BRepPrimAPI_MakeCylinder(start, kRadius, kBefore).Shape(), turn).Shape();
+  pipe = BRepAlgoAPI_Fuse(pipe, BRepPrimAPI_MakeCylinder(end, kRadius, kBehind).Shape()).Shape();
+  const TopoDS_Shape body = only_solid(pipe);
+  Document document;
+  document.add(body, "water", kBlue);
+  const double off = kTurn / std::sqrt(2);
+  document.name(face_at(body, gp_Pnt(-kBefore, 0, 0)), "inlet");
+  document.name(face_at(body, gp_Pnt(kTurn, 0, kTurn + kBehind)), "outlet");
+  for (const gp_Pnt& p : {gp_Pnt(-kBefore / 2, 0, -kRadius), gp_Pnt(off, kRadius, kTurn - off),
+                          gp_Pnt(kTurn + kRadius, 0, kTurn + kBehind / 2)})
+    document.name(face_at(body, p), "wall");
+  document.write(file, "bend");
+}
+
 }  // namespace
 
 }  // namespace octafront::cad
@@ -260,6 +282,7 @@ int main(int argc, char** argv) {
     Message::DefaultMessenger()->ChangePrinters().Clear();
     octafront::cad::write_bracket(std::string(argv[1]) + "/bracket.step");
     octafront::cad::write_assembly(std::string(argv[1]) + "/assembly.step");
+    octafront::cad::write_bend(std::string(argv[1]) + "/bend.step");
     return 0;
   } catch (const Standard_Failure& failure) {
     std::cerr << "octafront_cad_samples: " << failure.GetMessageString() << "\n";

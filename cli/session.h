@@ -31,6 +31,8 @@ class Session {
 
   /// To stdout, with fields of Options as the command line names them; nothing if the user wants none, or JSON there.
   void say(const std::string& text) const;
+  /// What coordinates of the mesh count; empty: not known.
+  std::string unit;
   /// Where x, y and z of the mesh point, as Image::frame has it; empty: not known.
   std::string frame;
 

@@ -200,6 +200,7 @@ void write_mesh_targets(Session& session, const TetMesh& as_it_is, std::span<con
     session.context().report("writing", -1);
     WriteOptions options = options_of(a, i);
     options.materials = materials;
+    if (options.unit.empty()) options.unit = session.unit.empty() ? a.unit : session.unit;
     std::vector<std::string> notes = write_one(a.meshes[i], mesh, all_fields, options, session.context());
     session.warn("writing", group_notes);
     session.say_notes("writing", notes);

@@ -18,10 +18,10 @@ render() { # mesh, picture, options
   xvfb-run -a /usr/bin/python3 bench/pages/render.py "$mesh" "$picture" --size 800 560 "$@"
 }
 knot=(--cut 0,0,1 --keep 0.6 --view 0.2,-0.35,1)
-render "$work/guide/2/scan.vtu" docs/images/guide-scan.png "${knot[@]}"
-render "$work/guide/7/bend.vtu" docs/images/guide-sizes.png --cut 0,1,0 --up 0,0,1 --keep 0.5 --view 0.3,1,0.5
-"$(dirname "$python")/octafront" convert "$work/guide/9/knot.1.ele" -o "$work/before.vtu" -q
+render "$work"/guide/*/scan.vtu docs/images/guide-scan.png "${knot[@]}"
+render "$work"/guide/*/bend.vtu docs/images/guide-sizes.png --cut 0,1,0 --up 0,0,1 --keep 0.5 --view 0.3,1,0.5
+"$(dirname "$python")/octafront" convert "$work"/guide/*/knot.1.ele -o "$work/before.vtu" -q
 render "$work/before.vtu" "$work/before.png" "${knot[@]}"
-render "$work/guide/9/better.vtu" "$work/after.png" "${knot[@]}"
+render "$work"/guide/*/better.vtu "$work/after.png" "${knot[@]}"
 /usr/bin/python3 bench/pages/side_by_side.py docs/images/guide-improve.png "$work/before.png" "$work/after.png"
-xvfb-run -a env PYTHONPATH=examples/solve /usr/bin/python3 bench/pages/guide_bracket.py "$work/guide/1" docs/images/guide-calculix.png
+xvfb-run -a env PYTHONPATH=examples/solve /usr/bin/python3 bench/pages/guide_bracket.py "$(dirname "$work"/guide/*/pull.frd)" docs/images/guide-calculix.png

@@ -33,7 +33,6 @@ CASES = {
                                                "box:20,-30,-10,120,30,60=8", "--layers", 3, "--yplus", 30, "--gradation", 0.3], None, "", ""),
 }
 KINDS = {"tetrahedra": [], "polyhedra": ["--polyhedral"]}
-METRES = {"bracket": 0.001}
 
 
 def mesh_case(program, case, folder, kind):
@@ -48,15 +47,6 @@ def mesh_case(program, case, folder, kind):
     if status != 0:
         raise SystemExit(f"{case}: {said}")
     return cpu, json.loads((folder / "out.json").read_text())["layers"]
-
-
-def in_metres(folder, scale):
-    """What the guide says of coordinates that are none."""
-    subprocess.run(["transformPoints", "-case", folder, "-scale", f"({scale} {scale} {scale})"], check=True, capture_output=True, env=environment())
-    control = folder / "system/controlDict"
-    scaled = lambda power: lambda found: f"{found[1]} {float(found[2]) * scale**power!r};"
-    text = re.sub(r"(lRef) ([^;]+);", scaled(1), control.read_text())
-    control.write_text(re.sub(r"(Aref) ([^;]+);", scaled(2), text))
 
 
 def solve(folder, area):
@@ -76,8 +66,6 @@ def solve(folder, area):
 
 def measured(program, case, kind, folder):
     cpu, layers = mesh_case(program, case, folder, kind)
-    if case in METRES:
-        in_metres(folder, METRES[case])
     return {"origin": ORIGIN, "mesh cpu": cpu, "full": min(wall["share_full"] for wall in layers), "foam": check_mesh(folder), "flow": solve(folder, CASES[case][2])}
 
 

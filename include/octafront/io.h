@@ -92,6 +92,7 @@ struct WriteOptions {
   bool deck = false;
   std::optional<double> speed = {};  ///< of the flow at the inlet, m/s, for `deck`
   std::string fluid = "air";         ///< viscosity_of() of octafront/options.h, for `deck`
+  std::string unit = {};             ///< what coordinates count, "mm": `deck` writes metres; empty: metres
   bool cohesive = false;   ///< elements of no height (COH3D6) between the two sides of faces that were split: Abaqus
   std::string beams = {};  ///< names of curves, separated by commas, that are beams, too (B31, B32): Abaqus
   std::vector<SetMaterial> materials = {};  ///< of sets of the mesh. Abaqus: of "E" *ELASTIC and *SOLID SECTION, else a

@@ -233,7 +233,8 @@ octafront_job* octafront_read_mesh(const char* file); /**< -> mesh */
  * file), ascii (true: as text), cells_only (true: tetrahedra alone), polyhedral (true: the dual), parts (a number: so
  * many parts), partitioner ("curve", "metis"), split_files (true: MSH in parts, a file each), job (what makes it a job
  * of a solver, an object or the name of a file of it: octafront/solver_job.h), deck (true: an OpenFOAM case), speed,
- * fluid ("air"): WriteOptions of octafront/io.h. The report has notes. */
+ * fluid ("air"), unit ("mm": what coordinates count, for deck): WriteOptions of octafront/io.h. The report has notes.
+ */
 octafront_job* octafront_write_mesh(const octafront_mesh* mesh, const char* file, const char* options);
 octafront_job* octafront_read_sizes(const char* file, double gradation); /**< -> sizes */
 octafront_job* octafront_write_sizes(const octafront_sizes* sizes, const char* file);

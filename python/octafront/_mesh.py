@@ -291,7 +291,7 @@ class Mesh:
         return self
 
     def save(self, path, *, format=None, ascii=False, cells_only=False, polyhedral=False, cohesive=False, beams="",
-             parts=0, partitioner="curve", split_files=False, job=None, deck=False, speed=None, fluid="air"):
+             parts=0, partitioner="curve", split_files=False, job=None, deck=False, speed=None, fluid="air", unit=""):
         """Writes the mesh in the format that the ending tells, or by its name in octafront.formats(). `ascii`: as text, of
         formats that are binary else; `cells_only`: the tetrahedra alone, with regions and sets, without faces and edges,
         which some programs refuse beside them; `polyhedral`: the dual, a polyhedron for each vertex (a folder polyMesh, .cgns,
@@ -300,13 +300,14 @@ class Mesh:
         processes (.pvtu, .vtkhdf, .msh, a folder polyMesh), along a curve or by `partitioner` "metis"; `split_files`: a .msh
         for each. `job`: a dict, or a file of it, of materials, supports and loads that make the file a job of a solver
         (.inp, .bdf, .cdb, .med; docs/use/jobs.md). `deck`: around CASE/constant/polyMesh the rest of a case for OpenFOAM's simpleFoam, by the
-        `speed` at the inlet, m/s, of a `fluid`, "air", "water" or its kinematic viscosity. Returns what a user should know, as
+        `speed` at the inlet, m/s, of a `fluid`, "air", "water" or its kinematic viscosity, and in metres by the `unit` of
+        the mesh, "mm". Returns what a user should know, as
         sentences: what the format cannot hold. An older file stays whole if that fails: OutputError; OptionError for what the
         format cannot do."""
         options = {"format": format or "", "ascii": bool(ascii), "cells_only": bool(cells_only),
                    "polyhedral": bool(polyhedral), "cohesive": bool(cohesive), "beams": str(beams), "parts": operator.index(parts),
                    "partitioner": str(partitioner), "split_files": bool(split_files), "job": job if job is None or isinstance(job, dict) else os.fspath(job),
-                   "deck": bool(deck), "speed": speed if speed is None else float(speed), "fluid": str(fluid)}
+                   "deck": bool(deck), "speed": speed if speed is None else float(speed), "fluid": str(fluid), "unit": str(unit)}
         return Job("write_mesh", self._handle, file_of(path), json.dumps(options).encode()).run()["notes"]
 
     def adapt(self, *, sizes=None, metric=None, **keywords):

@@ -323,7 +323,7 @@ class CommandLine(unittest.TestCase):
         rules.write_text("# seat only\nplate|bracket=split\n")
         self.assertEqual(len(made("--contact", rules)["opened_contacts"]), 1)
         refused = self.run_cli("mesh", SAMPLES / "assembly.step", "-o", mesh, "--contact", "plate|nut=split", status=2)
-        self.assertIn('there is no contact "plate|nut"; there is contacts "bolt hole 1"', refused.stderr)
+        self.assertIn('there is no contact "plate|nut"; there are contacts "bolt hole 1"', refused.stderr)
         refused = self.run_cli("mesh", self.part, "-o", mesh, "--contacts", "splitt", status=2)
         self.assertIn("give shared, split or separate", refused.stderr)
 

@@ -27,6 +27,21 @@ def prism(sides, radius, heights):
     return "\n".join([*lines, "g top", "f " + " ".join(str(last + i + 1) for i in range(sides))]) + "\n"
 
 
+def sleeve(sides, inner, outer, heights):
+    """OBJ around prism(sides, inner, heights), its hole by the same facets."""
+    ring = [(r * math.cos(2 * math.pi * i / sides), r * math.sin(2 * math.pi * i / sides)) for r in (inner, outer) for i in range(sides)]
+    lines, last = [f"v {x!r} {y!r} {z!r}" for z in heights for x, y in ring], 2 * sides * (len(heights) - 1)
+    for i in range(sides):
+        a, b = i + 1, (i + 1) % sides + 1
+        lines += ["g rims", f"f {a} {b} {a + sides}", f"f {b} {b + sides} {a + sides}"]
+        lines += [f"f {last + b} {last + a} {last + b + sides}", f"f {last + a} {last + a + sides} {last + b + sides}"]
+        for k in range(0, last, 2 * sides):
+            above = k + 2 * sides
+            lines += ["g hole", f"f {k + b} {k + a} {above + a}", f"f {k + b} {above + a} {above + b}", "g round"]
+            lines += [f"f {k + sides + a} {k + sides + b} {above + sides + b}", f"f {k + sides + a} {above + sides + b} {above + sides + a}"]
+    return "\n".join(lines) + "\n"
+
+
 def cards(bulk):
     """Names and fields of Nastran's cards, of 8 or 16 characters, from all of their lines."""
     found = []
@@ -149,6 +164,7 @@ class Jobs(unittest.TestCase):
         self.dir = pathlib.Path(self.scratch.name)
         (self.dir / "bar.obj").write_text(prism(4, 7, (0, 40)))
         (self.dir / "rod.obj").write_text(prism(24, 5, (0, 15, 30)))
+        (self.dir / "sleeve.obj").write_text(sleeve(24, 5, 9, (0, 15, 30)))
         (self.dir / "low.obj").write_text(prism(4, 14, (0, 8)))
         (self.dir / "high.obj").write_text(prism(4, 7, (8, 16)))
 
@@ -389,6 +405,20 @@ class Jobs(unittest.TestCase):
         # Its length stays: half of what comes along goes to each end.
         self.mesh("rod.obj", "--fix", "bottom", "--couple", "REF=top", "--fix", "REF", "--pretension", "body=1000", "--pressure", "side_0=0")
         self.expect(self.reactions()["bottom"], [0, 0, -1000])
+
+    def test_a_bolt_is_cut_where_its_hole_lets_it_slide(self):
+        job = ["--contacts", "split", "--fix", "rod/bottom", "--fix", "rod/top", "--pretension", "rod=1000"]
+        self.assertIn("let one of them slide", self.mesh("rod.obj sleeve.obj", *job, status=2))
+        self.mesh("rod.obj sleeve.obj", *job, "--fix", "sleeve/round", "--friction", 0)
+        if shutil.which("ccx"):
+            self.assertAlmostEqual(self.reactions()["rod_bottom"][2], -1000, delta=10)
+
+    def test_notes_of_contacts(self):
+        tied = self.mesh("rod.obj sleeve.obj", "--contacts", "split", "--fix", "rod/bottom")
+        self.assertIn("some nodes of \"rod/bottom\" are tied to another part", tied)
+        self.assertNotIn("tied", self.mesh("rod.obj sleeve.obj", "--contacts", "split", "--fix", "rod/bottom", "--friction", 0))
+        self.assertIn("is curved and slides", self.mesh("rod.obj sleeve.obj", "--contacts", "separate", "--friction", 0))
+        self.assertNotIn("is curved", self.mesh("low.obj high.obj", "--contacts", "separate", "--friction", 0))
 
 
 if __name__ == "__main__":

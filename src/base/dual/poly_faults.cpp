@@ -22,18 +22,23 @@ class FaultFinder {
   bool is_unsound(std::uint32_t c) const {
     return !is_closed(mesh_, c, faces_[c]) || !(volume_of(mesh_, c, faces_[c]) > 0);
   }
-  bool is_faulty(std::uint32_t c) const {
-    return std::ranges::any_of(faces_[c], [&](std::uint32_t f) { return is_faulty_face(f); });
+  bool is_turned(std::uint32_t c) const {
+    return std::ranges::any_of(faces_[c], [&](std::uint32_t f) { return is_turned_face(f); });
+  }
+  bool is_askew(std::uint32_t c) const {
+    return std::ranges::any_of(faces_[c], [&](std::uint32_t f) { return is_askew_face(f); });
   }
 
  private:
-  bool is_faulty_face(std::size_t f) const {
+  bool is_turned_face(std::size_t f) const {
     const FaceMeasure face = measure(mesh_, f);
-    if (dot(face.area, face.middle - middles_[mesh_.owner[f]]) <= 0) return true;
+    return dot(face.area, face.middle - middles_[mesh_.owner[f]]) <= 0 ||
+           (f < mesh_.inner_faces() && dot(face.area, middles_[mesh_.neighbour[f]] - face.middle) <= 0);
+  }
+  bool is_askew_face(std::size_t f) const {
     if (f >= mesh_.inner_faces()) return false;
     const Vec3 across = middles_[mesh_.neighbour[f]] - middles_[mesh_.owner[f]];
-    return dot(face.area, middles_[mesh_.neighbour[f]] - face.middle) <= 0 ||
-           dot(normalized(face.area), normalized(across)) < kLeastCosine;
+    return dot(normalized(measure(mesh_, f).area), normalized(across)) < kLeastCosine;
   }
 
   const PolyMesh& mesh_;
@@ -54,8 +59,11 @@ PolyFaults faults_of(const PolyMesh& mesh) {
   };
   PolyFaults faults;
   const std::vector<std::uint32_t> unsound = those([&](std::uint32_t c) { return finder.is_unsound(c); });
-  faults.unsound = unsound.size();
-  faults.cells = those([&](std::uint32_t c) { return finder.is_faulty(c) || std::ranges::binary_search(unsound, c); });
+  const std::vector<std::uint32_t> turned = those([&](std::uint32_t c) { return finder.is_turned(c); });
+  faults.unsound = unsound.size(), faults.turned = turned.size();
+  faults.cells = those([&](std::uint32_t c) {
+    return std::ranges::binary_search(unsound, c) || std::ranges::binary_search(turned, c) || finder.is_askew(c);
+  });
   return faults;
 }
 

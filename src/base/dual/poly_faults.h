@@ -4,7 +4,7 @@
 
 #include <cstddef>
 #include <cstdint>
-#include <utility>
+#include <tuple>
 #include <vector>
 
 namespace octafront::dual {
@@ -14,9 +14,10 @@ struct PolyFaults {
   /// lying askew to the line between the middles of its cells. Ascending.
   std::vector<std::uint32_t> cells;
   std::size_t unsound = 0;  ///< how many of them are not closed, or of no volume
+  std::size_t turned = 0;   ///< how many have a face that is not seen from a middle
 
   bool is_less(const PolyFaults& other) const {
-    return std::pair(unsound, cells.size()) < std::pair(other.unsound, other.cells.size());
+    return std::tuple(unsound, turned, cells.size()) < std::tuple(other.unsound, other.turned, other.cells.size());
   }
 };
 

@@ -48,6 +48,12 @@ const std::vector<Row<WriteOptions>>& write_rows() {
               .takes("NAME|NU"),
           [](auto& o) -> auto& { return o.fluid; }),
       write_row(
+          About("unit", "Output", "improve convert",
+                "What coordinates count: the case of a `deck` is written in metres")
+              .takes("UNIT")
+              .without("metres"),
+          [](auto& o) -> auto& { return o.unit; }),
+      write_row(
           about_writing("cohesive",
                         "Cohesive elements of no height between the two sides of what was split (Abaqus: COH3D6)"),
           [](auto& o) -> auto& { return o.cohesive; }),

@@ -126,17 +126,20 @@ std::vector<std::uint32_t> patches_called(std::string_view option, const std::ve
 
 std::string no_such_place(const std::string& name, const std::vector<NamesOfKind>& there) {
   std::string kinds, lists;
+  bool are_many = false;  // of the kind that is listed first
   for (const auto& [kind, names] : there) {
     const bool is_last = kind == there.back().kind;
     kinds += (kinds.empty() ? "" : is_last ? " or " : ", ") + std::string(kind);
     if (names.empty()) continue;
+    if (lists.empty()) are_many = names.size() > 1;
     lists += fmt::format("{}{}", lists.empty() ? "" : "; ",
                          noun(names.size(), std::string(kind), kind == "patch" ? "patches" : ""));
     for (std::size_t i = 0; i < std::min(kMostListed, names.size()); ++i)
       lists += fmt::format("{} \"{}\"", i == 0 ? "" : ",", names[i]);
     if (names.size() > kMostListed) lists += ", ...";
   }
-  return fmt::format("there is no {} \"{}\"; {}", kinds, name, lists.empty() ? "there is none" : "there is " + lists);
+  return fmt::format("there is no {} \"{}\"; {}", kinds, name,
+                     lists.empty() ? "there is none" : (are_many ? "there are " : "there is ") + lists);
 }
 
 }  // namespace octafront

@@ -113,6 +113,42 @@ class JobPlaces {
   const SolverJob& job_;
 };
 
+/// Of each opened contact of a mesh what is asked for it; null: nothing.
+using ContactLaws = std::vector<const JobContact*>;
+
+void take_law(const TetMesh& mesh, const JobContact& asked, ContactLaws& laws) {
+  const std::vector<OpenedContact>& opened = mesh.opened_contacts;
+  const std::vector<std::uint32_t> meant = named_so(mesh.patch_names, asked.place);
+  bool found = asked.place.empty();
+  for (std::size_t i = 0; i < opened.size(); ++i) {
+    const auto means = [&](std::uint32_t patch) { return std::ranges::find(meant, patch) != meant.end(); };
+    if (asked.place.empty() || means(opened[i].first) || means(opened[i].second)) laws[i] = &asked, found = true;
+  }
+  if (found) return;
+  std::vector<std::string> there;
+  for (const OpenedContact& o : opened) there.push_back(patch_label(mesh.patch_names, o.first));
+  throw OptionError(fmt::format("`friction`: {}; open them by `contacts` split",
+                                no_such_place(asked.place, {{"opened contact", there}})));
+}
+
+ContactLaws laws_of(const TetMesh& mesh, const SolverJob& job) {
+  ContactLaws laws(mesh.opened_contacts.size(), nullptr);
+  for (const bool default_first : {true, false})
+    for (const JobContact& asked : job.contacts)
+      if (asked.place.empty() == default_first) take_law(mesh, asked, laws);
+  return laws;
+}
+
+/// The patches of the contacts that hold nodes of both sides together.
+std::vector<std::uint32_t> tied_patches(const TetMesh& mesh, const SolverJob& job) {
+  const ContactLaws laws = laws_of(mesh, job);
+  std::vector<std::uint32_t> tied;
+  for (std::size_t i = 0; i < laws.size(); ++i)
+    if (laws[i] == nullptr || !laws[i]->friction)
+      tied.insert(tied.end(), {mesh.opened_contacts[i].first, mesh.opened_contacts[i].second});
+  return tied;
+}
+
 class Planner {
  public:
   Planner(MeshOutput& out, const MeshParts& mesh, const SolverJob& job, const std::vector<BoltSection>& sections)
@@ -130,6 +166,7 @@ class Planner {
     refuse_what_follows_twice();
     if (job_.gravity) plan_gravity();
     note_what_lacks();
+    note_what_reactions_lack();
     return std::move(plan_);
   }
 
@@ -308,35 +345,30 @@ class Planner {
   /// Contacts of parts that nobody names are tied; what is open inside a part, a crack, stays so.
   void plan_contacts() {
     const std::vector<OpenedContact>& opened = mesh_.mesh().opened_contacts;
-    std::vector<const JobContact*> laws(opened.size(), nullptr);
-    for (const bool default_first : {true, false})
-      for (const JobContact& asked : job_.contacts)
-        if (asked.place.empty() == default_first) take_law(asked, laws);
+    const ContactLaws laws = laws_of(mesh_.mesh(), job_);
     for (std::size_t i = 0; i < opened.size(); ++i) {
       const std::array<std::size_t, 2> parts{part_of_patch(opened[i].first), part_of_patch(opened[i].second)};
       if (std::max(parts[0], parts[1]) >= mesh_.parts().size()) continue;
       if (laws[i] != nullptr || region_at(parts[0]) != region_at(parts[1]))
         plan_.contacts.push_back(contact_of(parts, laws[i] != nullptr ? laws[i]->friction : std::nullopt));
+      if (laws[i] != nullptr && laws[i]->friction && !opened[i].conforming && !is_flat(parts[0]))
+        out_.note(
+            fmt::format("\"{}\" is curved and slides on triangles of its own: chords of one side reach into the "
+                        "other, which presses them apart; `contacts` split has the same triangles on both",
+                        mesh_.parts()[parts[0]].name));
     }
+  }
+  bool is_flat(std::size_t part) const {
+    constexpr double kFlat = 1e-3;  // of an edge
+    const auto faces = triangles_of(mesh_, mesh_.parts()[part]);
+    const auto& [a, b, c] = faces[0];
+    const Vec3 normal = normalized(cross(b - a, c - a));
+    return std::ranges::all_of(faces, [&, &a = a, edge = length(b - a)](const auto& face) {
+      return std::ranges::all_of(face, [&](Vec3 p) { return std::abs(dot(p - a, normal)) < kFlat * edge; });
+    });
   }
   std::uint32_t region_at(std::size_t part) const {
     return mesh_.region_of(mesh_.sides()[mesh_.parts()[part].members[0]].tet);
-  }
-
-  void take_law(const JobContact& asked, std::vector<const JobContact*>& laws) const {
-    const std::vector<OpenedContact>& opened = mesh_.mesh().opened_contacts;
-    const std::vector<std::string>& names = mesh_.mesh().patch_names;
-    const std::vector<std::uint32_t> meant = named_so(names, asked.place);
-    bool found = asked.place.empty();
-    for (std::size_t i = 0; i < opened.size(); ++i) {
-      const auto means = [&](std::uint32_t patch) { return std::ranges::find(meant, patch) != meant.end(); };
-      if (asked.place.empty() || means(opened[i].first) || means(opened[i].second)) laws[i] = &asked, found = true;
-    }
-    if (found) return;
-    std::vector<std::string> there;
-    for (const OpenedContact& o : opened) there.push_back(patch_label(names, o.first));
-    throw OptionError(fmt::format("`friction`: {}; open them by `contacts` split",
-                                  no_such_place(asked.place, {{"opened contact", there}})));
   }
 
   /// The finer side is the slave, else the softer one.
@@ -414,6 +446,20 @@ class Planner {
       out_.note("the job has no loads: `load`, `pressure`, `gravity`, `pretension`");
   }
 
+  void note_what_reactions_lack() {
+    std::set<VertexIndex> tied;
+    for (const JobPlan::Contact& c : plan_.contacts)
+      for (const std::size_t side : {c.slave, c.master})
+        if (!c.friction)
+          for (const VertexIndex v : mesh_.nodes_of(mesh_.parts()[side])) tied.insert(v);
+    for (const JobPlan::Fix& fix : plan_.fixes)
+      if (std::ranges::any_of(mesh_.nodes_of(mesh_.parts()[fix.part]), [&](VertexIndex v) { return tied.contains(v); }))
+        out_.note(
+            fmt::format("some nodes of \"{}\" are tied to another part: CalculiX leaves what comes by the tie out "
+                        "of their reactions; hold faces away from it where reactions matter",
+                        name_of(fix)));
+  }
+
   MeshOutput& out_;
   const MeshParts& mesh_;
   const SolverJob& job_;
@@ -466,7 +512,7 @@ JobMesh mesh_for_job(const TetMesh& mesh, const SolverJob& job) {
     if (!made.changed) made.changed = mesh;
     const MeshParts parts(*made.changed);
     for (const std::uint32_t region : JobPlaces(*made.changed, parts, job).regions("pretension", bolt.region)) {
-      made.sections.push_back(open_bolt(*made.changed, region));
+      made.sections.push_back(open_bolt(*made.changed, region, tied_patches(*made.changed, job)));
       made.sections.back().force = bolt.force;
     }
   }

@@ -107,9 +107,9 @@ Vec3 as_node_has_it(const JobPlan& plan, const MeshParts& mesh, VertexIndex node
 /// Where pressures are written on tetrahedra alone, by this `card`. Throws OptionError.
 void refuse_pressure_on_wedges(const MeshParts& mesh, const JobPlan& plan, std::string_view card);
 
-/// Opens a bolt, as near to the middle of its largest cylinder as a section leaves nodes of contacts and of other
+/// Opens a bolt, as near to the middle of its largest cylinder as a section leaves nodes of these patches and of other
 /// regions alone. Throws OptionError.
-BoltSection open_bolt(TetMesh& mesh, std::uint32_t region);
+BoltSection open_bolt(TetMesh& mesh, std::uint32_t region, const std::vector<std::uint32_t>& tied);
 /// The triangles of a part of faces.
 std::vector<std::array<Vec3, 3>> triangles_of(const MeshParts& mesh, const Part& part);
 

@@ -6,6 +6,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <functional>
 
 #include <fmt/core.h>
 
@@ -21,27 +22,28 @@ Triangle face_of_tet(const Tet& tet, int face) {
 
 class Bolt {
  public:
-  Bolt(const MeshParts& mesh, const Part& region)
+  Bolt(const MeshParts& mesh, const Part& region, const std::vector<std::uint32_t>& tied)
       : mesh_(mesh), region_(region), across_(half_face_neighbors(mesh.mesh().tets, mesh.mesh().points.size())) {
     is_own_.assign(mesh.tets(), 0);
     for (const std::uint32_t t : region.members) is_own_[t] = 1;
-    mark_taken();
+    mark_taken(tied);
   }
 
-  /// The largest of the cylinders that bound it.
-  Cylinder shank() const {
-    std::optional<Cylinder> best;
-    for (const Part& patch : mesh_.parts(Part::Origin::kPatch)) {
-      if (!bounds(patch)) continue;
-      const std::optional<Cylinder> c = cylinder_of(triangles_of(mesh_, patch));
-      if (c && (!best || c->radius * c->half_length > best->radius * best->half_length)) best = c;
-    }
-    if (!best)
+  /// The largest of the cylinders that bound it, and those that go on from it, of the same axis and radius.
+  std::vector<Cylinder> shank() const {
+    std::vector<Cylinder> all = cylinders();
+    if (all.empty())
       throw OptionError(
           fmt::format("`pretension`: \"{}\" has no patch that is a cylinder, which would say where its axis is; where "
                       "its faces are one patch, divide them by `patches`",
                       region_.name));
-    return *best;
+    constexpr double kSameRadius = 0.98;  // facets of other sizes
+    const Cylinder largest = all[0];
+    std::erase_if(all, [&](const Cylinder& c) {
+      const auto [less, more] = std::minmax(c.radius, largest.radius);
+      return less < kSameRadius * more || !share_axis(c, largest);
+    });
+    return all;
   }
 
   /// The faces between elements on both sides of a plane; empty: a node is taken.
@@ -66,6 +68,15 @@ class Bolt {
     for (const VertexIndex v : mesh_.mesh().tets[t]) sum += mesh_.mesh().points[v] - at;
     return dot(sum, axis) > 0;
   }
+  /// Largest first.
+  std::vector<Cylinder> cylinders() const {
+    std::vector<Cylinder> all;
+    for (const Part& patch : mesh_.parts(Part::Origin::kPatch))
+      if (bounds(patch))
+        if (const std::optional<Cylinder> c = cylinder_of(triangles_of(mesh_, patch))) all.push_back(*c);
+    std::ranges::stable_sort(all, std::greater<>(), [](const Cylinder& c) { return c.radius * c.half_length; });
+    return all;
+  }
   bool bounds(const Part& patch) const {
     return std::ranges::all_of(patch.members, [&](std::uint32_t f) {
       const auto& [tet, face] = mesh_.sides()[f];
@@ -73,15 +84,14 @@ class Bolt {
       return is_own_[tet] || (other != kNone && is_own_[other / 4]);
     });
   }
-  void mark_taken() {
+  void mark_taken(const std::vector<std::uint32_t>& tied) {
     is_taken_.assign(mesh_.points(), 0);
     for (TetIndex t = 0; t < mesh_.tets(); ++t)
       if (!is_own_[t])
         for (const VertexIndex v : mesh_.mesh().tets[t]) is_taken_[v] = 1;
-    for (const OpenedContact& contact : mesh_.mesh().opened_contacts)
-      for (std::size_t f = 0; f < mesh_.mesh().boundary.size(); ++f)
-        if (mesh_.patch_of(f) == contact.first || mesh_.patch_of(f) == contact.second)
-          for (const VertexIndex v : mesh_.face(f)) is_taken_[v] = 1;
+    for (std::size_t f = 0; f < mesh_.mesh().boundary.size(); ++f)
+      if (std::ranges::find(tied, mesh_.patch_of(f)) != tied.end())
+        for (const VertexIndex v : mesh_.face(f)) is_taken_[v] = 1;
   }
 
   const MeshParts& mesh_;
@@ -96,21 +106,22 @@ struct Cut {
   std::vector<Triangle> faces;  ///< that look along the axis
 };
 
-Cut cut_of(const MeshParts& mesh, std::uint32_t region) {
+Cut cut_of(const MeshParts& mesh, std::uint32_t region, const std::vector<std::uint32_t>& tied) {
   const auto regions = mesh.parts(Part::Origin::kRegion);
   const Part& part = *std::ranges::find(regions, region, &Part::number);
-  const Bolt bolt(mesh, part);
-  const Cylinder shank = bolt.shank();
-  constexpr int kSteps = 8;  // sections that are tried on each side of the middle
-  for (int step = 0; step < 2 * kSteps; ++step) {
-    const double t = (step % 2 == 0 ? 0.5 : -0.5) * static_cast<double>(step + step % 2) / kSteps;
-    const Vec3 at = shank.middle + shank.axis * (t * shank.half_length);
-    std::vector<Triangle> faces = bolt.section(at, shank.axis);
-    if (!faces.empty()) return {part.name, at, shank.axis, std::move(faces)};
-  }
+  const Bolt bolt(mesh, part, tied);
+  constexpr int kSteps = 8;  // sections that are tried on each side of a middle
+  for (const Cylinder& shank : bolt.shank())
+    for (int step = 0; step < 2 * kSteps; ++step) {
+      const double t = (step % 2 == 0 ? 0.5 : -0.5) * static_cast<double>(step + step % 2) / kSteps;
+      const Vec3 at = shank.middle + shank.axis * (t * shank.half_length);
+      std::vector<Triangle> faces = bolt.section(at, shank.axis);
+      if (!faces.empty()) return {part.name, at, shank.axis, std::move(faces)};
+    }
   throw OptionError(
       fmt::format("`pretension`: every section across the cylinder of \"{}\" meets faces that it shares with other "
-                  "parts; a shank must be free somewhere: give its hole some clearance",
+                  "parts, or is tied to; let one of them slide (`contacts` split, `friction` 0), or give its hole some "
+                  "clearance",
                   part.name));
 }
 
@@ -145,10 +156,10 @@ std::vector<std::array<Vec3, 3>> triangles_of(const MeshParts& mesh, const Part&
   return all;
 }
 
-BoltSection open_bolt(TetMesh& mesh, std::uint32_t region) {
+BoltSection open_bolt(TetMesh& mesh, std::uint32_t region, const std::vector<std::uint32_t>& tied) {
   if (!mesh.wide_cells.empty())
     throw OptionError("`pretension`: a section cuts tetrahedra, not the wedges of layers; give them up by `as_tets`");
-  const Cut cut = cut_of(MeshParts(mesh), region);
+  const Cut cut = cut_of(MeshParts(mesh), region, tied);
   const std::string name = free_name(mesh, cut.region + " section");
   add_faces_inside(mesh, cut.faces, name);
   split_patches(mesh, {name});

@@ -1,6 +1,7 @@
 #include "formats/write/foam_case.h"
 
 #include <octafront/error.h>
+#include <octafront/units.h>
 
 #include <algorithm>
 #include <array>
@@ -90,7 +91,10 @@ struct Conditions {
 class FoamCase {
  public:
   FoamCase(const WriteOptions& options, std::vector<FoamPatch> patches)
-      : speed_(*options.speed), nu_(viscosity_of(options.fluid)), patches_(std::move(patches)) {}
+      : speed_(*options.speed),
+        nu_(viscosity_of(options.fluid)),
+        metres_(metres_of_case(options)),
+        patches_(std::move(patches)) {}
 
   bool is_tunnel() const {
     return std::ranges::any_of(patches_, [](const FoamPatch& p) { return p.role == Role::kSlip; });
@@ -158,7 +162,7 @@ class FoamCase {
           "        rho rhoInf;\n        rhoInf 1;\n        CofR (0 0 0);\n        liftDir (0 0 1);\n"
           "        dragDir (1 0 0);\n        pitchAxis (0 1 0);\n        magUInf {:.9g};\n        lRef {:.9g};\n"
           "        Aref {:.9g};\n        writeControl timeStep;\n        writeInterval 1;\n    }}\n",
-          walls, speed_, high - low, shadow);
+          walls, speed_, (high - low) * metres_, shadow * metres_ * metres_);
     return text;
   }
 
@@ -178,7 +182,7 @@ class FoamCase {
   double nu() const { return nu_; }
 
  private:
-  double speed_, nu_;
+  double speed_, nu_, metres_;
   std::vector<FoamPatch> patches_;
 };
 
@@ -218,6 +222,12 @@ std::string_view foam_type_of(std::string_view name) {
   return role == Role::kWall || role == Role::kRoad ? "wall" : "patch";
 }
 
+double metres_of_case(const WriteOptions& options) {
+  if (!options.deck || options.unit.empty()) return 1;
+  if (const LengthUnit* unit = unit_named(options.unit)) return unit->metres;
+  throw OptionError(fmt::format("`unit`: \"{}\" is no unit of length", options.unit));
+}
+
 void check_foam_case(const fs::path& target, const WriteOptions& options) {
   if (!options.deck) return;
   if (target.filename() != "polyMesh" || target.parent_path().filename() != "constant")
@@ -225,6 +235,7 @@ void check_foam_case(const fs::path& target, const WriteOptions& options) {
   if (options.parts > 0) throw OptionError("`deck` writes a case that is whole: let decomposePar divide it");
   if (!options.speed) throw OptionError("`deck` of OpenFOAM needs the speed at the inlet: `speed`, in m/s");
   viscosity_of(options.fluid);
+  metres_of_case(options);
   const fs::path folder = case_folder(target);
   for (const fs::path& file : {folder / "0", folder / "system", folder / "constant" / "transportProperties",
                                folder / "constant" / "turbulenceProperties"})
@@ -255,8 +266,9 @@ void write_foam_case(MeshOutput& out, const MeshParts& mesh, std::span<const std
   put(out.path_for_library("turbulenceProperties"),
       head("dictionary", "turbulenceProperties") +
           "simulationType RAS;\nRAS { RASModel kOmegaSST; turbulence on; printCoeffs on; }\n");
-  out.note(fmt::format("case for simpleFoam: {:.6g} m/s, nu {:.4g} m2/s, k-omega SST; coordinates count metres there",
-                       all.speed(), all.nu()));
+  const double metres = metres_of_case(out.options());
+  out.note(fmt::format("case for simpleFoam: {:.6g} m/s, nu {:.4g} m2/s, k-omega SST; coordinates {} metres there",
+                       all.speed(), all.nu(), metres == 1 ? "count" : fmt::format("times {:g} are", metres)));
 }
 
 }  // namespace octafront::io

@@ -18,6 +18,9 @@ std::string_view foam_type_of(std::string_view name);
 /// Throws OptionError if no case can be written around this polyMesh, OutputError where files of another one are.
 void check_foam_case(const std::filesystem::path& target, const WriteOptions& options);
 
+/// What coordinates count where a case is written: 1 without.
+double metres_of_case(const WriteOptions& options);
+
 /// Writes the rest of a case for simpleFoam. `names`: legal ones of MeshParts::parts().
 void write_foam_case(MeshOutput& out, const MeshParts& mesh, std::span<const std::string> names);
 

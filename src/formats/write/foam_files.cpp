@@ -62,7 +62,7 @@ void FoamFiles::list(const std::string& name, std::string_view type, std::size_t
 void FoamFiles::points(std::size_t count, const std::function<Vec3(std::size_t)>& place_of) const {
   list("points", "vectorField", count, [&](TextWriter& out) {
     for (std::size_t i = 0; i < count; ++i) {
-      const Vec3 p = place_of(i);
+      const Vec3 p = place_of(i) * metres;
       out << '(' << p.x << ' ' << p.y << ' ' << p.z << ")\n";
     }
   });

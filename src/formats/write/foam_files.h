@@ -30,6 +30,7 @@ struct FoamFiles {
   std::string location;
   RunContext context;
   bool is_case = false;  ///< patches get types by their names
+  double metres = 1;     ///< what a coordinate counts
 
   void file(const std::string& name, std::string_view type, const std::function<void(TextWriter&)>& write) const;
   /// A list of so many values in lines of their own.

@@ -40,7 +40,7 @@ void write_boundary(const FoamFiles& files, const MeshParts& parts, std::span<co
 }  // namespace
 
 void write_openfoam_polyhedra(MeshOutput& out, const MeshParts& parts, const PolyMesh& mesh) {
-  const FoamFiles files{out.folder(), kFoamLocation, out.context(), out.options().deck};
+  const FoamFiles files{out.folder(), kFoamLocation, out.context(), out.options().deck, metres_of_case(out.options())};
   const std::vector<std::string> names =
       legal_names(out, parts, kFoamNames, std::array{Part::Origin::kRegion, Part::Origin::kPatch});
   files.points(mesh.points.size(), [&](std::size_t p) { return mesh.points[p]; });

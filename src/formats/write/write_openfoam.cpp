@@ -380,7 +380,8 @@ fs::path case_of(const fs::path& target) {
 void write_openfoam(MeshOutput& out, const MeshParts& mesh) {
   const MixedCells cells(mesh);
   const FoamWhole whole(out, mesh, cells);
-  FoamMesh(whole).write({out.folder(), kFoamLocation, out.context(), out.options().deck});
+  FoamMesh(whole).write(
+      {out.folder(), kFoamLocation, out.context(), out.options().deck, metres_of_case(out.options())});
   write_foam_case(out, mesh, whole.names);
 }
 

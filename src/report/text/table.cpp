@@ -160,7 +160,7 @@ std::string wall_lines(const std::vector<WallSummary>& walls) {
 }
 
 std::string contact_lines(const std::vector<ContactSummary>& contacts) {
-  std::string out = fmt::format("{:<62}{:>12}{:>12}\n", "opened contacts", "triangles", "beyond");
+  std::string out = fmt::format("{:<62}{:>12}{:>12}\n", "opened contacts", "triangles", "other side");
   for (const ContactSummary& c : std::span(contacts).first(std::min(contacts.size(), kMostRegionLines)))
     out += fmt::format("  {:<60.60}{:>12}{:>12}\n", c.patches[0], grouped(c.triangles[0]), grouped(c.triangles[1]));
   if (contacts.size() > kMostRegionLines)

@@ -7,6 +7,7 @@
 #include <octafront/poly_mesh.h>
 #include <octafront/validity.h>
 
+#include "base/dual/poly_faults.h"
 #include "support/named_surfaces.h"
 
 #include <algorithm>
@@ -166,19 +167,40 @@ TEST(Tunnel, ADeckIsACaseAndWritesOverNone) {
   const std::string target = (folder / "constant" / "polyMesh").string();
   EXPECT_THROW(check_mesh_target(target, how), OptionError);
   how.speed = 20;
+  how.unit = "furlong";
+  EXPECT_THROW(check_mesh_target(target, how), OptionError);
+  how.unit = "cm";
   check_mesh_target(target, how);
   write_mesh(target, mesh, {}, how);
   for (const char* file : {"0/U", "0/p", "0/k", "0/omega", "0/nut", "system/controlDict", "system/fvSchemes",
                            "system/fvSolution", "constant/transportProperties", "constant/turbulenceProperties"})
     EXPECT_TRUE(fs::exists(folder / file)) << file;
-  std::ifstream control(folder / "system" / "controlDict");
-  const std::string text{std::istreambuf_iterator<char>(control), {}};
+  const auto text_of = [&](const fs::path& file) {
+    std::ifstream in(folder / file);
+    return std::string{std::istreambuf_iterator<char>(in), {}};
+  };
+  const std::string text = text_of("system/controlDict");
   EXPECT_THAT(text, HasSubstr("patches (wall)"));
   EXPECT_THAT(text, HasSubstr("magUInf 20;"));
+  EXPECT_THAT(text, HasSubstr("lRef 0.0198"));
+  EXPECT_THAT(text_of("constant/polyMesh/points"), HasSubstr("(-0.05 -0.05 -0.05)"));
   EXPECT_THROW(check_mesh_target(target, how), OutputError);
   how.deck = false;
   check_mesh_target(target, how);
   fs::remove_all(folder);
+}
+
+TEST(Tunnel, PolyhedraSeeTheirFacesAtASharpEdge) {
+  constexpr double kHalf = 0.17632698;  // of an edge of 20 degrees
+  SurfaceMesh blade;
+  blade.points = {{0, 0, 0}, {1, -kHalf, 0}, {1, kHalf, 0}, {0, 0, 1}, {1, -kHalf, 1}, {1, kHalf, 1}};
+  blade.triangles = {{0, 2, 1}, {3, 4, 5}, {0, 1, 4}, {0, 4, 3}, {1, 2, 5}, {1, 5, 4}, {2, 0, 3}, {2, 3, 5}};
+  Options options;
+  options.size.size = 0.25;
+  options.layers.count = 3;
+  options.layers.first_part = 0.1;
+  const PolyMesh dual = dual_mesh(generate(in_tunnel(blade, "-1,-1.5,-1:3,1.5,2"), options).mesh);
+  EXPECT_EQ(dual::faults_of(dual).turned, 0U);
 }
 
 }  // namespace

@@ -156,7 +156,7 @@ TEST(Contacts, WhatCannotBeIsRefusedBeforeAnythingIsMade) {
     EXPECT_THAT([&] { generate(domain, options); }, ThrowsMessage<OptionError>(HasSubstr(words)));
   };
   refused(with(ContactWay::kShared, {{"low|top", ContactWay::kSplit}}), {},
-          "there is no contact \"low|top\"; there is contacts \"low|middle\", \"middle|top\"");
+          "there is no contact \"low|top\"; there are contacts \"low|middle\", \"middle|top\"");
   Options options = layers_of_size(0.5);
   options.size.named = {{"nosuch", 0.1}};
   refused(with(ContactWay::kSeparate), options, "nosuch");
