@@ -1,11 +1,12 @@
 #!/usr/bin/python3
 """Assemblies from STEP to a solved job, one command each: writes docs/measured/assemblies.md.
 
-  bench/campaigns/assemblies.py FILE.step ... [--page] [--seconds S]
+  bench/campaigns/assemblies.py FILE.step[@x] ... [--page] [--seconds S]
 
-Each part is meshed at a fortieth of the assembly's diagonal, held at the largest plane at z min, pulled at that at z max by 100 along x, y and z,
-and solved by ccx: contacts tied, and with friction .2, at orders 1 and 2. A run is good if ccx ends and the reaction is the load within .1 %. One
-thread. Needs ccx and a built octafront with CAD (build/release, or OCTAFRONT=FILE). Status 1 if any run is not good.
+Each part is meshed at a twentieth of the assembly's diagonal, held at the largest plane at z min, pulled at that at z max by 100 along x, y and z
+(FILE@x: of x), and solved by ccx at orders 1 and 2: nodes shared; contacts opened and tied; one of them with friction .2 and the others tied. That is the largest one
+without which all parts hang together still: no friction without pressure holds a part. A run is good if ccx ends and the reaction is the load within
+.1 %. One thread. Needs ccx and a built octafront with CAD (build/release, or OCTAFRONT=FILE). Status 1 if any run is not good.
 """
 import argparse
 import collections
@@ -24,11 +25,36 @@ from bench.pages.origin import written_by
 from bench.process import run_measured
 
 OCTAFRONT = os.environ.get("OCTAFRONT", str(ROOT / "build/release/cli/octafront"))
-HELD, PULLED, FORCE, PART, NEAR = "largest plane at z min", "largest plane at z max", 100, 40, 1e-3
-WAYS = {(law, order): [*options, "--order", order] for law, options in
-        {"shared": [], "tied": ["--contacts", "split"], "friction": ["--contacts", "split", "--friction", ".2"]}.items() for order in "12"}
+PLANE, FORCE, PART, NEAR = "largest plane at {} {}", 100, 20, 1e-3
 HEAD = ["assembly", "parts", "contacts", "how", "order", "elements", "CPU s, mesh", "CPU s, ccx", "reaction off, %", "outcome"]
 Run = collections.namedtuple("Run", "mesh solve elements off outcome", defaults=(0, 0, 0, math.nan, "good"))
+
+
+def pieces(parts, contacts):
+    """How many pieces the parts hang together in."""
+    piece = {p: p for p in parts}
+    for a, b in contacts:
+        piece = {p: piece[a] if q == piece[b] else q for p, q in piece.items()}
+    return len(set(piece.values()))
+
+
+def sliding(told):
+    """The patch of the largest contact without which no part comes off; None if there is none."""
+    touching = sorted((c for c in told["contacts"] if "patch" in c), key=lambda c: -c["area"])
+    parts = [s["name"] for s in told["solids"]]
+    for chosen in touching:
+        rest = [c["solids"] for c in touching if c["patch"] != chosen["patch"]]
+        if pieces(parts, rest) == pieces(parts, [c["solids"] for c in touching]):
+            return chosen["patch"]
+    return None
+
+
+def ways(told):
+    """How contacts are taken: options by law and order."""
+    laws = {"shared": [], "tied": ["--contacts", "split"]}
+    if patch := sliding(told):
+        laws["friction"] = ["--contacts", "split", "--friction", f"{patch}=.2"]
+    return {(law, order): [*options, "--order", order] for law, options in laws.items() for order in "12"}
 
 
 def reaction(folder):
@@ -38,10 +64,10 @@ def reaction(folder):
     return [float(x) for x in found[-1].split()] if found else None
 
 
-def one(file, size, options, seconds):
+def one(file, axis, size, options, seconds):
     with tempfile.TemporaryDirectory() as folder:
-        made = run_measured([OCTAFRONT, "mesh", file, "-o", "job.inp", "--json", "report.json", "--threads", "1", "--size", repr(size), "--fix", HELD,
-                             "--load", f"{PULLED}={FORCE},{FORCE},{FORCE}", *options], folder, seconds)
+        made = run_measured([OCTAFRONT, "mesh", file, "-o", "job.inp", "--json", "report.json", "--threads", "1", "--size", repr(size), "--fix",
+                             PLANE.format(axis, "min"), "--load", f"{PLANE.format(axis, 'max')}={FORCE},{FORCE},{FORCE}", *options], folder, seconds)
         if made.error:
             return Run(made.cpu_seconds, outcome="mesh: " + made.error)
         elements = json.loads(pathlib.Path(folder, "report.json").read_text())["tets"]
@@ -64,27 +90,30 @@ def page(rows, arguments):
     good = sum(row[-1] == "good" for row in rows)
     tables.write("assemblies", [
         "# Assemblies, from STEP to a solved job", "",
-        f"{written_by('bench/campaigns/assemblies.py ' + ' '.join(f.name for f in arguments.files) + ' --page')}: {good} of {len(rows)} good.", "",
-        f"Each is meshed at a fortieth of its diagonal, held at the {HELD}, pulled at the {PULLED} by {FORCE} along each axis, and solved by CalculiX: one"
-        " command for the mesh with its job, one to solve it. Good: the solver ends, and the reaction is the load within .1 %.", "",
+        f"{written_by('bench/campaigns/assemblies.py ' + ' '.join(pathlib.Path(f).name for f in arguments.files) + ' --page')}: {good} of {len(rows)} good.", "",
+        f"Each is meshed at a twentieth of its diagonal, held at the largest plane at z min (of x where it says so), pulled at that at z max by {FORCE} along each axis, and solved by CalculiX: one"
+        " command for the mesh with its job, one to solve it. Contacts share nodes, or are opened and tied, or the largest one without which no part comes off"
+        " has friction .2. Good: the solver ends, and the reaction is the load within .1 %.", "",
         *tables.table(HEAD, rows), "", f"The rows: {tables.put('assemblies', HEAD, rows)}."])
 
 
 def main():
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
-    parser.add_argument("files", nargs="+", type=pathlib.Path)
+    parser.add_argument("files", nargs="+")
     parser.add_argument("--seconds", type=float, default=600)
     parser.add_argument("--page", action="store_true")
     arguments = parser.parse_args()
     rows = []
-    for file in arguments.files:
+    for given in arguments.files:
+        name, _, axis = given.partition("@")
+        file = pathlib.Path(name)
         told = info(file.resolve())
         if not told.get("solids"):
             print(f"{file.name}: no solids", flush=True)
             continue
-        for (law, order), options in WAYS.items():
-            run = one(file.resolve(), math.dist(*told["box"]) / PART, options, arguments.seconds)
-            rows.append([file.stem, len(told["solids"]), len(told.get("contacts", [])), law, order, f"{run.elements:,}", f"{run.mesh:.1f}",
+        for (law, order), options in ways(told).items():
+            run = one(file.resolve(), axis or "z", math.dist(*told["box"]) / PART, options, arguments.seconds)
+            rows.append([file.stem + (f", {axis}" if axis else ""), len(told["solids"]), len(told.get("contacts", [])), law, order, f"{run.elements:,}", f"{run.mesh:.1f}",
                          f"{run.solve:.1f}", f"{100 * run.off:.4f}", run.outcome])
             print(*rows[-1], sep="  ", flush=True)
     if arguments.page:

@@ -30,6 +30,7 @@ std::string region_name(const Domain& domain, std::size_t region);
 /// What is left to do with a CAD file.
 struct CadTaken {
   bool is_clean = false;          ///< nothing: the domain's surface can be meshed
+  bool closes_gaps = false;       ///< `bodies` are clean, and nearer to each other than `tolerance`
   std::vector<Body> bodies = {};  ///< solids to be joined; empty: the domain's surface is to be mended
 };
 

@@ -9,6 +9,7 @@
 #include "cad/shapes/collapse_tiny.h"
 #include "cad/shapes/face_groups.h"
 #include "cad/shapes/names.h"
+#include "cad/shapes/part_contacts.h"
 #include "cad/shapes/shapes.h"
 #include "doors/intake/cad_intake.h"
 #include "doors/intake/intake.h"
@@ -384,6 +385,14 @@ void refuse_overlaps(const Domain& domain) {
   }
 }
 
+/// Whether solids lie apart by no more than what is to close: OpenCASCADE closes none, but their triangles can be joined.
+bool has_gaps_to_close(const CadModel& model, const IntakeOptions& options) {
+  const double closes = options.complex.tolerance.value_or(0) * unit_of(model, options.cad);
+  return closes > 0 && std::ranges::any_of(cad::contacts_of(model), [&](const cad::Contact& contact) {
+           return contact.gap > 0 && contact.gap <= closes;
+         });
+}
+
 }  // namespace
 
 CadTaken take_cad(Domain& domain, const IntakeOptions& options, const std::string& file, const RunContext& context) {
@@ -391,7 +400,8 @@ CadTaken take_cad(Domain& domain, const IntakeOptions& options, const std::strin
   Triangulated made = CadIn(file, domain, options, context).triangulate();
   CadTaken taken;
   const bool has_solids = !made.model.solids.empty();
-  taken.is_clean = has_solids && made.defects.empty();
+  taken.closes_gaps = has_solids && made.defects.empty() && has_gaps_to_close(made.model, options);
+  taken.is_clean = has_solids && made.defects.empty() && !taken.closes_gaps;
   if (made.model.solids.size() == 1) refuse_crossing_solid(made);
   if (!made.defects.empty()) note(domain, options, "CAD", "the triangles are mended: " + made.defects);
   if (!taken.is_clean && made.model.solids.size() > 1) taken.bodies = bodies_of(made);
@@ -413,6 +423,7 @@ CadTaken take_cad(Domain& domain, const IntakeOptions& options, const std::strin
 
 void finish_joined_cad(Domain& domain, const CadTaken& taken, ComplexOptions::Overlap overlap) {
   take_patches_of_faces(domain.surface, taken.bodies);
+  if (taken.closes_gaps) return;  // it is said what moved
   if (overlap == ComplexOptions::Overlap::kAuto)
     refuse_overlaps(domain);
   else

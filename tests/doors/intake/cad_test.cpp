@@ -12,6 +12,8 @@
 #include <array>
 #include <cmath>
 #include <cstdlib>
+#include <fstream>
+#include <iterator>
 #include <numbers>
 #include <set>
 #include <string>
@@ -251,6 +253,30 @@ TEST_F(CadFiles, SolidsShareFacesAndKeepTheirColours) {
   std::set<std::uint32_t> regions;
   for (const std::uint32_t t : bolts->members) regions.insert(mesh.region[t]);
   EXPECT_EQ(regions, (std::set<std::uint32_t>{2, 3}));
+}
+
+TEST_F(CadFiles, AGapClosesWithinATolerance) {
+  std::ifstream in(kAssembly);
+  std::string text{std::istreambuf_iterator<char>(in), {}};
+  const std::string at = "(45.,10.,6.)";
+  ASSERT_NE(text.find(at), std::string::npos);
+  text.replace(text.find(at), at.size(), "(45.,10.,6.1)");  // one bolt, out of its seat
+  std::ofstream("lifted.step") << text;
+  const auto touching = [](double tolerance) {  // the area of the bracket on the bolt
+    IntakeOptions intake;
+    intake.complex.tolerance = tolerance;
+    const SurfaceMesh surface = open_domain("lifted.step", intake_for(of_size(5), intake)).surface;
+    double area = 0;
+    for (std::size_t t = 0; t < surface.triangles.size(); ++t) {
+      const auto& [a, b, c] = surface.triangles[t];
+      const auto& p = surface.points;
+      const auto [front, behind] = surface.sides[t];
+      if (front + behind == 3 && front * behind == 2) area += length(cross(p[b] - p[a], p[c] - p[a])) / 2;
+    }
+    return area;
+  };
+  EXPECT_LT(touching(0.05), 155) << "the hole alone";
+  EXPECT_GT(touching(0.15), 235);
 }
 
 TEST_F(CadFiles, SizesByColourAndByFace) {
