@@ -385,7 +385,7 @@ void refuse_overlaps(const Domain& domain) {
   }
 }
 
-/// Whether solids lie apart by no more than what is to close: OpenCASCADE closes none, but their triangles can be joined.
+/// Whether solids lie apart by no more than what is to close: OpenCASCADE does not, but their triangles can be joined.
 bool has_gaps_to_close(const CadModel& model, const IntakeOptions& options) {
   const double closes = options.complex.tolerance.value_or(0) * unit_of(model, options.cad);
   return closes > 0 && std::ranges::any_of(cad::contacts_of(model), [&](const cad::Contact& contact) {
@@ -423,8 +423,9 @@ CadTaken take_cad(Domain& domain, const IntakeOptions& options, const std::strin
 
 void finish_joined_cad(Domain& domain, const CadTaken& taken, ComplexOptions::Overlap overlap) {
   take_patches_of_faces(domain.surface, taken.bodies);
-  if (taken.closes_gaps) return;  // it is said what moved
-  if (overlap == ComplexOptions::Overlap::kAuto)
+  if (taken.closes_gaps)
+    domain.true_volumes.clear();  // whoever got a gap is larger than in the file; it is said by how much
+  else if (overlap == ComplexOptions::Overlap::kAuto)
     refuse_overlaps(domain);
   else
     domain.true_volumes = domain.volumes;
