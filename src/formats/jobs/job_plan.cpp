@@ -166,6 +166,11 @@ class Planner {
     refuse_what_follows_twice();
     if (job_.gravity) plan_gravity();
     note_what_lacks();
+    if (const std::string loose = loose_parts(mesh_, plan_); !loose.empty())
+      out_.note(
+          fmt::format("{} hang on nothing that is held: join them (`tolerance` closes gaps), hold them, or leave them "
+                      "out; solvers stop there, or answer with zeros",
+                      loose));
     note_what_reactions_lack();
     return std::move(plan_);
   }

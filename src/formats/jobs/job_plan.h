@@ -98,6 +98,10 @@ JobMesh mesh_for_job(const TetMesh& mesh, const SolverJob& job);
 JobPlan plan_job(MeshOutput& out, const MeshParts& mesh, const SolverJob& job,
                  const std::vector<BoltSection>& sections);
 
+/// The regions that neither nodes nor contacts, couplings or bolts join to what is held: "\"lid\", \"pin\""; empty if
+/// nothing is held.
+std::string loose_parts(const MeshParts& mesh, const JobPlan& plan);
+
 /// The shares of nodes in a force on faces.
 NodeShares shares_of(const MeshParts& mesh, const Part& part);
 /// The area of faces, as these shares have it.
