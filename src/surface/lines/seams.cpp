@@ -329,11 +329,12 @@ Place place_of(Vec3 p) {
   return {p.x, p.y, p.z};
 }
 
-/// Vertices on seams by their place: the copies of one vertex of the complex.
-std::map<Place, std::vector<VertexIndex>> copies_on_seams(const WorkingMesh& mesh) {
-  std::map<Place, std::vector<VertexIndex>> copies;
+/// Vertices on seams behind their places, sorted: the copies of one vertex of the complex stand side by side.
+std::vector<std::pair<Place, VertexIndex>> copies_on_seams(const WorkingMesh& mesh) {
+  std::vector<std::pair<Place, VertexIndex>> copies;
   for (VertexIndex v = 0; v < mesh.points.size(); ++v)
-    if (mesh.outgoing[v] != kNone && mesh.is_sewn(v)) copies[place_of(mesh.points[v])].push_back(v);
+    if (mesh.outgoing[v] != kNone && mesh.is_sewn(v)) copies.emplace_back(place_of(mesh.points[v]), v);
+  std::ranges::sort(copies);
   return copies;
 }
 
@@ -371,11 +372,17 @@ class SeamCoarsener {
  public:
   SeamCoarsener(WorkingMesh& mesh, const PeriodicCell& cell, const RunContext& context, CoarsenCounts& counts)
       : mesh_(mesh), cell_(cell), context_(context), counts_(counts) {
-    for (auto& [place, copies] : by_originals(copies_on_seams(mesh), cell)) {
-      const bool is_input = std::all_of(copies.begin(), copies.end(), [&](VertexIndex v) {
-        return mesh.kind[v] == VertexKind::kRemovableCurve && mesh.on_seam(v);
-      });
-      if (is_input) left_.push_back(std::move(copies));
+    auto copies = copies_on_seams(mesh);
+    for (auto& [place, v] : copies)
+      if (cell.is_periodic()) place = place_of(cell.original({place[0], place[1], place[2]}));
+    std::ranges::stable_sort(copies, {}, &std::pair<Place, VertexIndex>::first);
+    for (auto first = copies.begin(); first != copies.end();) {
+      const auto last = std::find_if(first, copies.end(), [&](const auto& c) { return c.first != first->first; });
+      std::vector<VertexIndex> here;
+      for (; first != last; ++first) here.push_back(first->second);
+      const bool is_input = std::ranges::all_of(
+          here, [&](VertexIndex v) { return mesh.kind[v] == VertexKind::kRemovableCurve && mesh.on_seam(v); });
+      if (is_input) left_.push_back(std::move(here));
     }
   }
 
@@ -394,19 +401,6 @@ class SeamCoarsener {
   }
 
  private:
-  using Copies = std::map<Place, std::vector<VertexIndex>>;
-
-  /// Those at places that are copies of each other together.
-  static Copies by_originals(Copies copies, const PeriodicCell& cell) {
-    if (!cell.is_periodic()) return copies;
-    Copies all;
-    for (const auto& [place, here] : copies) {
-      auto& to = all[place_of(cell.original({place[0], place[1], place[2]}))];
-      to.insert(to.end(), here.begin(), here.end());
-    }
-    return all;
-  }
-
   /// The place at `v` that is the copy of one at `first`, as v is of first.
   Place copied(const Place& target, VertexIndex first, VertexIndex v) const {
     if (mesh_.points[first] == mesh_.points[v]) return target;
@@ -721,12 +715,9 @@ std::uint64_t divide_repeated_triangles(WorkingMesh& mesh, const KnownSurface& c
 std::vector<VertexIndex> sewn_vertices(const WorkingMesh& mesh) {
   std::vector<VertexIndex> sewn(mesh.points.size());
   for (VertexIndex v = 0; v < sewn.size(); ++v) sewn[v] = v;
-  std::vector<std::pair<Place, VertexIndex>> on_seams;
-  for (VertexIndex v = 0; v < sewn.size(); ++v)
-    if (mesh.outgoing[v] != kNone && mesh.is_sewn(v)) on_seams.emplace_back(place_of(mesh.points[v]), v);
-  std::ranges::sort(on_seams);
-  for (std::size_t i = 1; i < on_seams.size(); ++i)
-    if (on_seams[i].first == on_seams[i - 1].first) sewn[on_seams[i].second] = sewn[on_seams[i - 1].second];
+  const std::vector<std::pair<Place, VertexIndex>> copies = copies_on_seams(mesh);
+  for (std::size_t i = 1; i < copies.size(); ++i)
+    if (copies[i].first == copies[i - 1].first) sewn[copies[i].second] = sewn[copies[i - 1].second];
   return sewn;
 }
 
