@@ -168,7 +168,7 @@ class Planner {
     note_what_lacks();
     if (const std::string loose = loose_parts(mesh_, plan_); !loose.empty())
       out_.note(
-          fmt::format("{} hang on nothing that is held: join them (`tolerance` closes gaps), hold them, or leave them "
+          fmt::format("nothing joins {} to what is held: join them (`tolerance` closes gaps), hold them, or leave them "
                       "out; solvers stop there, or answer with zeros",
                       loose));
     note_what_reactions_lack();
