@@ -165,6 +165,12 @@ const std::vector<CommandRow>& command_rows() {
        "Surface or mesh; or several surfaces, a body each", run_check},
       {"report", "Show a mesh: a web page with it in 3D, and its numbers", "  octafront report part.msh -o part.html\n",
        kMesh, run_report},
+      {"picture", "Draw any input or mesh as a PNG: octafront picture part.msh -o part.png",
+       "  octafront picture part.step -o part.png --names           its faces by name\n"
+       "  octafront picture part.msh -o inside.png --cut y          cut open, coloured by quality\n"
+       "  octafront picture part.msh -o worst.png --worst           the worst element, near by\n"
+       "  octafront picture part.msh -o where.png --highlight inlet    where a face is\n",
+       "Surface, mesh, CAD file, image or formula; or several files, a body each", run_picture},
   };
   return rows;
 }

@@ -32,9 +32,9 @@ void check_picture(const PictureOptions& options) {
 }
 
 Picture blank(int width, int height) {
-  constexpr std::uint8_t kWhite = 255;
+  constexpr std::uint8_t kGround = 255;  // white
   return {width, height,
-          std::vector<std::uint8_t>(3 * static_cast<std::size_t>(width) * static_cast<std::size_t>(height), kWhite)};
+          std::vector<std::uint8_t>(3 * static_cast<std::size_t>(width) * static_cast<std::size_t>(height), kGround)};
 }
 
 /// Somewhat from the side, so that a cut has depth; of both sides that nearer to where one looks from else.

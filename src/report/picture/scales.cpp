@@ -86,8 +86,12 @@ void size_legend(Legend& legend, const SizeRange& sizes, const std::string& unit
 }
 
 std::string in_groups(std::uint64_t number) {
-  std::string digits = fmt::format("{}", number);
-  for (std::size_t at = digits.size(); at > 3; at -= 3) digits.insert(at - 3, ",");
+  const std::string plain = fmt::format("{}", number);
+  std::string digits;
+  for (std::size_t i = 0; i < plain.size(); ++i) {
+    if (i > 0 && (plain.size() - i) % 3 == 0) digits += ',';
+    digits += plain[i];
+  }
   return digits;
 }
 

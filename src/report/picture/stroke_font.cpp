@@ -27,9 +27,9 @@ constexpr const char* kGlyphs[] = {"A0D3N6D 1G5G",
                                    "L0N0D5D",
                                    "M0D0N4F8N8D",
                                    "N0D0N6D6N",
-                                   "O3N0n0d3D6d6n3N",
+                                   "O4N0n0d4D8d8n4N",
                                    "P0D0N3N6n6h3H0H",
-                                   "Q3N0n0d3D6d6n3N 4G7C",
+                                   "Q4N0n0d4D8d8n4N 5G8C",
                                    "R0D0N3N6n6h3H0H 3H6D",
                                    "S6L6n3N0n0i3I6i6d3D0d0F",
                                    "T0N6N 3N3D",
@@ -130,7 +130,7 @@ constexpr const char* kGlyphs[] = {"A0D3N6D 1G5G",
                                    "\xc3\xb8"
                                    "3K0k0d3D6d6k3K 0C6L",
                                    "\xc3\x98"
-                                   "3N0n0d3D6d6n3N 0C6O",
+                                   "4N0n0d4D8d8n4N 0C8O",
                                    "\xc3\x9f"
                                    "0D0L0n2N4n4j2I5i5d3D2D",
                                    "\xe2\x80\x93"
