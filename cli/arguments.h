@@ -56,7 +56,7 @@ struct Arguments {
   std::vector<std::pair<std::string, std::string>> formulas;  ///< fields by name and formula, in turn
   std::uint32_t material_bins = 0;                            ///< of the last field; 0: none
   PictureOptions picture;
-  int new_order = 0;                                          ///< of a converted mesh; 0: as it is
+  int new_order = 0;  ///< of a converted mesh; 0: as it is
   int threads = 0;
   ProcessLimits limits;
   bool quiet = false;

@@ -196,8 +196,8 @@ std::vector<LineOption> output_options() {
        needed([](Arguments & a) -> auto& { return a.output; }), "Surface: .stl, .obj, .off or .ply"},
       {"size", kGroup, "-o,--output", "FILE", "Background grid: .vtu",
        value([](Arguments & a) -> auto& { return a.output; }), "Background grid: .vtu"},
-      {"picture", kGroup, "-o,--output", "FILE", "Picture: .png", needed([](Arguments & a) -> auto& { return a.output; }),
-       "Picture: .png"},
+      {"picture", kGroup, "-o,--output", "FILE", "Picture: .png",
+       needed([](Arguments & a) -> auto& { return a.output; }), "Picture: .png"},
       {"report", kGroup, "-o,--output", "FILE", "Web page: .html, one file that needs no network",
        needed([](Arguments & a) -> auto& { return a.output; }), "Web page: .html, one file that needs no network"},
       {kWriters, kGroup, "--format", "NAME",
@@ -389,6 +389,11 @@ std::vector<LineOption> run_options() {
          if (!(seconds > 0)) throw CLI::ValidationError(option, "is a number of seconds above 0");
          a.limits.cpu_seconds = seconds;
        })},
+      {kAll, kGroup, "--within", "FOLDER",
+       "Files are read and written only in this folder and below, links followed, also those that other files name; "
+       "may "
+       "be repeated [anywhere]",
+       each([](Arguments& a, const std::string& typed) { a.limits.folders.push_back(typed); })},
       {kAll, kGroup, "-q,--quiet", "", "Print nothing but errors",
        flag([](Arguments & a) -> auto& { return a.quiet; })},
   };

@@ -66,6 +66,8 @@ std::vector<LineOption> picture_options() {
        "From where: iso, front, back, left, right, top, bottom, or the direction X,Y,Z in which the viewer is [iso, or "
        "where the cut or what is highlighted is seen]",
        each([](Arguments& a, const std::string& typed) { a.picture.view = picture_view(typed); }), "From where"},
+      {kPicture, kPictureGroup, "--up", "X,Y,Z", "Which way is up: an axis, y or -z, or a direction [z]",
+       each([](Arguments& a, const std::string& typed) { a.picture.up = picture_up(typed); })},
       {kPicture, kPictureGroup, "--highlight", "PLACE",
        "Show where a place is, all else grey: the name of a region, patch, curve or set, box:..., sphere:...; what is "
        "behind something shines through; may be repeated",

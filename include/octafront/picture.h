@@ -8,6 +8,7 @@
 #include <cstdint>
 #include <optional>
 #include <string>
+#include <string_view>
 #include <vector>
 
 namespace octafront {
@@ -32,9 +33,10 @@ struct PictureOptions {
   Edges edges = Edges::kAuto;
 
   std::optional<PictureCut> cut = {};
-  /// From where one looks, not zero; z is up, of a look along z y. Without a value along (1, -1, 1), or where the cut,
+  /// From where one looks, not zero. Without a value from (1, -1, 1), where y is up from (1, 1, 1), or where the cut,
   /// or most of what is to be highlighted, is seen.
   std::optional<Vec3> view = {};
+  std::optional<Vec3> up = {};     ///< not zero; without a value, and of a look along it, z, or else y
   int width = 1200, height = 900;  ///< pixels, 64 to 8192
 
   /// Places (docs/use/places.md) that are shown in a colour of their own, all else is grey. What of them lies behind
@@ -72,6 +74,9 @@ Picture draw_picture(const SurfaceMesh& surface, const PictureOptions& options =
 /// The bytes of a PNG file of it.
 std::string to_png(const Picture& picture);
 
+/// Bytes as text, by RFC 4648: for pages and messages that hold a picture.
+std::string to_base64(std::string_view bytes);
+
 /// Reads "x", "-y", "z=12.5", "x=30%", "NX,NY,NZ" or "NX,NY,NZ:X,Y,Z": the axis or normal beyond which all goes, and
 /// where: in the middle, at a coordinate, at a part of the extent, through a point. Throws OptionError.
 PictureCut picture_cut(const std::string& text);
@@ -79,5 +84,8 @@ PictureCut picture_cut(const std::string& text);
 /// Reads "X,Y,Z", the direction in which the viewer is, or iso, front (from -y), back, left, right, top or bottom.
 /// Throws OptionError.
 Vec3 picture_view(const std::string& text);
+
+/// Reads "X,Y,Z", a direction, or x, -y and the like. Throws OptionError.
+Vec3 picture_up(const std::string& text);
 
 }  // namespace octafront

@@ -2,7 +2,6 @@
 
 #include <cstdint>
 #include <string>
-#include <string_view>
 #include <vector>
 
 namespace octafront {
@@ -26,8 +25,6 @@ class Bytes {
   std::vector<std::uint8_t> all_;
 };
 
-/// In base64.
-std::string base64(std::string_view bytes);
 /// Compressed by deflate (with zlib's frame), in base64.
 std::string packed(const Bytes& bytes);
 

@@ -106,7 +106,7 @@ std::string still_picture(const TetMesh& mesh, const Json& report, const RunCont
     constexpr int kStep = 20, kMost = 255;
     channel = static_cast<std::uint8_t>(std::min(kMost, (channel + kStep / 2) / kStep * kStep + kMost % kStep));
   }
-  return "data:image/png;base64," + base64(to_png(picture));
+  return "data:image/png;base64," + to_base64(to_png(picture));
 }
 
 }  // namespace

@@ -103,4 +103,11 @@ Vec3 picture_view(const std::string& text) {
       "\"{}\" is no view: write iso, front, back, left, right, top, bottom, or where the viewer is, X,Y,Z", text));
 }
 
+Vec3 picture_up(const std::string& text) {
+  if (const std::optional<Vec3> axis = axis_called(text)) return *axis;
+  const std::optional<Vec3> up = three_numbers(text);
+  if (up && squared_length(*up) > 0) return *up;
+  throw OptionError(fmt::format("\"{}\" is no direction: write x, -y and the like, or X,Y,Z", text));
+}
+
 }  // namespace octafront

@@ -20,11 +20,12 @@ struct Extent {
 
 }  // namespace
 
-Camera looking_from(Vec3 view) {
-  constexpr double kAlongZ = 0.99;
+Camera looking_from(Vec3 view, Vec3 up) {
+  constexpr double kAlong = 0.99;
   Camera camera;
   camera.back = normalized(view);
-  const Vec3 up = std::abs(camera.back.z) > kAlongZ ? Vec3{0, 1, 0} : Vec3{0, 0, 1};
+  for (const Vec3 other : {Vec3{0, 0, 1}, Vec3{0, 1, 0}})
+    if (std::abs(dot(camera.back, normalized(up))) > kAlong) up = other;
   camera.right = normalized(cross(up, camera.back));
   camera.up = cross(camera.back, camera.right);
   return camera;

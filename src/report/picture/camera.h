@@ -18,8 +18,8 @@ struct Camera {
   }
 };
 
-/// That looks from there, z up; of a look along z y. REQUIRES a view that is not zero.
-Camera looking_from(Vec3 view);
+/// That looks from there. Where the view is along `up`, z is up, or else y. REQUIRES directions that are not zero.
+Camera looking_from(Vec3 view, Vec3 up = {0, 0, 1});
 /// Moves and scales it so that the corners of all triangles are in the window.
 void fit(Camera& camera, const Scene& scene, const Rectangle& window);
 /// So that a ball fills that part of the window.

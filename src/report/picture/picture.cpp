@@ -9,7 +9,6 @@
 #include "report/picture/raster.h"
 
 #include <algorithm>
-#include <array>
 #include <cmath>
 
 #include <fmt/core.h>
@@ -19,7 +18,14 @@ namespace octafront {
 namespace {
 
 constexpr int kLeastSide = 64, kMostSide = 8192;
-constexpr Vec3 kIsometric{1, -1, 1};
+constexpr Vec3 kUp{0, 0, 1};
+
+/// From the front of what stands upright, to the right and above.
+Vec3 isometric(const PictureOptions& options) {
+  const Vec3 up = normalized(options.up.value_or(kUp));
+  constexpr double kMostly = 0.7;
+  return std::abs(up.y) > kMostly ? Vec3{1, up.y, 1} : Vec3{1, -1, 1};
+}
 
 void check_picture(const PictureOptions& options) {
   for (const int side : {options.width, options.height})
@@ -28,6 +34,7 @@ void check_picture(const PictureOptions& options) {
                                     options.width, options.height));
   const auto is_way = [](Vec3 v) { return is_finite(v) && squared_length(v) > 0; };
   if (options.view && !is_way(*options.view)) throw OptionError("a view is a direction, not zero");
+  if (options.up && !is_way(*options.up)) throw OptionError("up is a direction, not zero");
   if (options.cut && !is_way(options.cut->normal)) throw OptionError("a cut has a normal, not zero");
 }
 
@@ -38,9 +45,9 @@ Picture blank(int width, int height) {
 }
 
 /// Somewhat from the side, so that a cut has depth; of both sides that nearer to where one looks from else.
-Vec3 view_of_cut(Vec3 normal) {
-  const Camera straight = looking_from(normal);
-  const auto towards = [](Vec3 way) { return dot(way, kIsometric) < 0 ? -way : way; };
+Vec3 view_of_cut(const PictureOptions& options) {
+  const Camera straight = looking_from(options.cut->normal, options.up.value_or(kUp));
+  const auto towards = [&](Vec3 way) { return dot(way, isometric(options)) < 0 ? -way : way; };
   return straight.back + 0.45 * towards(straight.right) + 0.4 * towards(straight.up);
 }
 
@@ -57,20 +64,24 @@ std::uint64_t marked_pixels(const Scene& scene, Vec3 view, const RunContext& con
 }
 
 /// From which of eight sides most of what is highlighted is seen; where that is little better, from the usual one.
-Vec3 view_of_marks(const Scene& scene, const RunContext& context) {
-  constexpr std::array<Vec3, 8> kViews{
-      {kIsometric, {1, 1, 1}, {-1, -1, 1}, {-1, 1, 1}, {1, -1, -1}, {1, 1, -1}, {-1, -1, -1}, {-1, 1, -1}}};
+Vec3 view_of_marks(const Scene& scene, const PictureOptions& options, const RunContext& context) {
+  const Vec3 usual = isometric(options);
+  Vec3 best = usual;
   constexpr double kMuchBetter = 1.4;
-  std::array<std::uint64_t, kViews.size()> seen{};
-  for (std::size_t k = 0; k < kViews.size(); ++k) seen[k] = marked_pixels(scene, kViews[k], context);
-  const auto best = static_cast<std::size_t>(std::ranges::max_element(seen) - seen.begin());
-  return static_cast<double>(seen[best]) > kMuchBetter * static_cast<double>(seen[0]) ? kViews[best] : kViews[0];
+  double most = kMuchBetter * static_cast<double>(marked_pixels(scene, usual, context));
+  for (const double x : {1, -1})
+    for (const double y : {-1, 1})
+      for (const double z : {1, -1}) {
+        const auto seen = static_cast<double>(marked_pixels(scene, {x, y, z}, context));
+        if (seen > most) most = seen, best = {x, y, z};
+      }
+  return best;
 }
 
 Vec3 chosen_view(const PictureOptions& options, const Scene& scene, const RunContext& context) {
   if (options.view) return *options.view;
-  if (options.cut) return view_of_cut(options.cut->normal);
-  return scene.marks > 0 ? view_of_marks(scene, context) : kIsometric;
+  if (options.cut) return view_of_cut(options);
+  return scene.marks > 0 ? view_of_marks(scene, options, context) : isometric(options);
 }
 
 void draw_marked_lines(Canvas& canvas, const Scene& scene, const Camera& camera, double text) {
@@ -110,7 +121,8 @@ struct Aim {
 Taken take(const Scene& scene, const PictureOptions& options, const Aim* aim, const RunContext& context) {
   context.report("drawing", -1);
   const std::vector<std::string> caption = caption_of(scene, options);
-  Taken taken{blank(options.width, options.height), looking_from(chosen_view(options, scene, context)),
+  Taken taken{blank(options.width, options.height),
+              looking_from(chosen_view(options, scene, context), options.up.value_or(kUp)),
               layout_for(options.width, options.height, scene.legend, caption.size(), options.furniture)};
   constexpr double kPartOfCloseUp = 0.22;
   if (aim == nullptr)
@@ -139,7 +151,7 @@ void draw_inset(Canvas& canvas, const TetMesh& mesh, const PictureOptions& optio
                 const RunContext& context) {
   PictureOptions whole;
   whole.color = PictureOptions::Color::kPlain, whole.edges = PictureOptions::Edges::kFeatures;
-  whole.view = options.view, whole.furniture = false;
+  whole.view = options.view, whole.up = options.up, whole.furniture = false;
   whole.width = std::max(kLeastSide, static_cast<int>(0.26 * layout.window.width()));
   whole.height = std::max(kLeastSide, static_cast<int>(0.26 * layout.window.height()));
   const Taken small = take(scene_of(mesh, whole, context), whole, nullptr, context);
@@ -156,7 +168,7 @@ void draw_inset(Canvas& canvas, const TetMesh& mesh, const PictureOptions& optio
 
 Picture close_up(const TetMesh& mesh, PictureOptions options, const RunContext& context) {
   if (mesh.tets.empty()) throw OptionError("there is no worst element: the mesh has none at all");
-  if (!options.view) options.view = kIsometric;
+  if (!options.view) options.view = isometric(options);
   const PoorElement worst = worst_elements(mesh, 1).front();
   Scene scene = scene_of(mesh, options, context);
   const std::string which =

@@ -308,6 +308,8 @@ TEST(Picture, WhatIsAskedIsReadOrRefused) {
   EXPECT_EQ(picture_view("top"), (Vec3{0, 0, 1}));
   EXPECT_EQ(picture_view("1,2,-3"), (Vec3{1, 2, -3}));
   for (const char* text : {"", "up", "0,0,0", "1,2"}) EXPECT_THROW(picture_view(text), OptionError) << text;
+  EXPECT_EQ(picture_up("-y"), (Vec3{0, -1, 0}));
+  EXPECT_THROW(picture_up("upwards"), OptionError);
   PictureOptions options;
   options.width = 10;
   EXPECT_THROW(draw_picture(testing::cube(), options), OptionError);
