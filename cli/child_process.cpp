@@ -77,7 +77,7 @@ void shut_in(const std::vector<std::string>& folders, const std::filesystem::pat
   if (rules < 0) return;
   for (const char* system : {"/usr", "/lib", "/lib64", "/bin", "/etc", "/proc", "/sys", "/dev", "/opt"})
     allow(rules, system, kRead);
-  allow(rules, "/dev/null", kRead | LANDLOCK_ACCESS_FS_WRITE_FILE);
+  allow(rules, "/dev/null", LANDLOCK_ACCESS_FS_READ_FILE | LANDLOCK_ACCESS_FS_WRITE_FILE);
   // Its libraries, and the program that reads CAD.
   allow(rules, program.parent_path().parent_path(), kRead);
   if (const char* reader = std::getenv("OCTAFRONT_CAD"))

@@ -21,6 +21,7 @@ namespace {
 constexpr std::string_view kOwnOptions[] = {"help",   "json",         "quiet",       "output", "threads",
                                             "memory", "max-elements", "cpu-seconds", "within", "dry-run"};
 constexpr std::size_t kListed = 40;
+constexpr double kLeastMegabytes = 64;  // without which nothing runs
 
 const OptionInfo* row_of(const std::string& name) {
   std::string field = name;
@@ -86,7 +87,7 @@ Json limits_in_schema() {
           {"properties",
            {{"elements", above_0("tetrahedra that are made or read")},
             {"seconds", above_0("by the clock")},
-            {"memory_mb", above_0("megabytes")}}}};
+            {"memory_mb", {{"type", "number"}, {"minimum", kLeastMegabytes}, {"description", "megabytes"}}}}}};
 }
 
 Json options_in_schema(const CLI::App& command) {
@@ -330,8 +331,10 @@ void add_limits(const Json& arguments, const ToolLimits& limits, const Folders& 
     throw BadCall{"bad_arguments", "limits is an object"};
   if (const auto n = least_limit(arguments, "elements", limits.elements))
     line.push_back(fmt::format("--max-elements={:.0f}", std::max(1.0, std::floor(*n))));
-  if (const auto mb = least_limit(arguments, "memory_mb", limits.memory_mb))
-    line.push_back(fmt::format("--memory={:.0f}", std::ceil(*mb * 1e6)));
+  const auto mb = least_limit(arguments, "memory_mb", limits.memory_mb);
+  if (mb && *mb < kLeastMegabytes)
+    throw BadCall{"bad_arguments", fmt::format("limits.memory_mb is {} at least", kLeastMegabytes)};
+  if (mb) line.push_back(fmt::format("--memory={:.0f}", std::ceil(*mb * 1e6)));
   plan.seconds = least_limit(arguments, "seconds", limits.seconds);
   if (limits.threads > 0) line.push_back(fmt::format("--threads={}", limits.threads));
   for (const std::string& folder : folders.all()) line.push_back("--within=" + folder);
@@ -439,7 +442,9 @@ Json next_calls(const Tool& tool, const Json& arguments, const Json& error, cons
     next.push_back(call_with(tool, arguments, "improve", "best", "the best improvement"));
     next.push_back(call("explain", "what went wrong, with places"));
   } else if (kind == "input" && first.is_string()) {
-    next.push_back(call("inspect", "what is in the file", {{"input", first}}));
+    const bool was_inspected = std::string_view(tool.name) == "inspect";
+    next.push_back(was_inspected ? call("inspect", "another file, or this one put right as the message says")
+                                 : call("inspect", "what is in the file", {{"input", first}}));
     if (std::string_view(tool.command) == "mesh") {
       next.push_back(call("explain", "what is wrong with it, where, and what to do", {{"file", first}}));
       next.push_back(call_with(tool, arguments, "repair", "wrap", "a closed skin around what bounds nothing"));

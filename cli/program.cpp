@@ -171,7 +171,7 @@ const std::vector<CommandRow>& command_rows() {
        "  octafront picture part.step -o part.png --names           its faces by name\n"
        "  octafront picture part.msh -o inside.png --cut y          cut open, coloured by quality\n"
        "  octafront picture part.msh -o worst.png --worst           the worst element, near by\n"
-       "  octafront picture part.msh -o where.png --highlight inlet    where a face is\n",
+       "  octafront picture part.msh -o where.png --highlight patch_1    where a face is\n",
        "Surface, mesh, CAD file, image or formula; or several files, a body each", run_picture},
   };
   return rows;
