@@ -14,6 +14,9 @@
 #include <sys/wait.h>
 #include <unistd.h>
 #endif
+#ifdef __APPLE__
+#include <mach-o/dyld.h>
+#endif
 #ifdef __linux__
 #include <linux/landlock.h>
 #include <sys/prctl.h>
@@ -44,9 +47,13 @@ namespace {
 constexpr int kCannotRun = 127;
 
 std::filesystem::path this_program() {
+#ifdef __APPLE__
+  std::array<char, 4096> name{};
+  auto size = static_cast<std::uint32_t>(name.size());
+  if (_NSGetExecutablePath(name.data(), &size) == 0) return name.data();
+#endif
   std::error_code error;
   const std::filesystem::path found = std::filesystem::read_symlink("/proc/self/exe", error);
-  if (const char* named = std::getenv("OCTAFRONT_PROGRAM")) return named;
   return error ? std::filesystem::path("octafront") : found;
 }
 
