@@ -62,6 +62,9 @@ Json option_in_schema(const CLI::Option& option, const std::string& about) {
     row["type"] = "boolean";
   } else if (type.find('|') != std::string::npos && type == CLI::detail::to_lower(type)) {
     row["enum"] = CLI::detail::split(type, '|');
+    // "2" is 2 to whoever writes JSON.
+    if (const OptionInfo* info = row_of(name); info != nullptr && info->kind == OptionInfo::Kind::kWhole)
+      for (const std::string& choice : CLI::detail::split(type, '|')) row["enum"].push_back(Json::parse(choice));
   } else if (const OptionInfo* info = row_of(name); info != nullptr && info->kind != OptionInfo::Kind::kText) {
     row["type"] = {"number", "string"};
   } else {
