@@ -103,8 +103,8 @@ std::string still_picture(const TetMesh& mesh, const Json& report, const RunCont
   if (report.contains("unit") && report["unit"].is_string()) options.unit = report["unit"];
   Picture picture = draw_picture(mesh, options, context);
   for (std::uint8_t& channel : picture.pixels) {
-    constexpr int kStep = 20, kMost = 255;
-    channel = static_cast<std::uint8_t>(std::min(kMost, (channel + kStep / 2) / kStep * kStep + kMost % kStep));
+    constexpr int kStep = 17;  // 0 and 255 stay what they are
+    channel = static_cast<std::uint8_t>((channel + kStep / 2) / kStep * kStep);
   }
   return "data:image/png;base64," + to_base64(to_png(picture));
 }
