@@ -7,9 +7,9 @@ import time
 
 
 class Client:
-    def __init__(self, octafront, *arguments, cwd=None, protocol="2025-06-18"):
+    def __init__(self, octafront, *arguments, cwd=None, env=None, protocol="2025-06-18"):
         self.process = subprocess.Popen([octafront, "serve", "--mcp", *map(str, arguments)], stdin=subprocess.PIPE,
-                                        stdout=subprocess.PIPE, stderr=subprocess.PIPE, cwd=cwd)
+                                        stdout=subprocess.PIPE, stderr=subprocess.PIPE, cwd=cwd, env=env)
         self.lines, self.notifications, self.number, self.transcript = queue.Queue(), [], 0, []
         threading.Thread(target=self._read, daemon=True).start()
         if protocol:

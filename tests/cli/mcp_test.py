@@ -1,5 +1,6 @@
 """`octafront serve --mcp`, spoken to line by line: mcp_test.py OCTAFRONT SAMPLES_DIR."""
 import base64
+import ctypes
 import json
 import os
 import pathlib
@@ -280,6 +281,23 @@ class Hostile(WithServer):
             self.assertIn("error", answer, name)
             self.assertIn("outside", answer["error"]["message"], name)
         self.assertEqual(self.state_outside(), before)
+
+    def test_what_is_run_cannot_leave_the_folders(self):
+        """By the kernel: a reader of CAD that tries."""
+        if ctypes.CDLL(None).syscall(444, None, 0, 1) < 1:
+            self.skipTest("this kernel has no Landlock")
+        tools = self.all / "tools"
+        tools.mkdir()
+        reader = tools / "reader"
+        reader.write_text(f"#!/bin/sh\ncat {self.outside}/bracket.stl > {self.dir}/stolen\necho x > {self.outside}/made\necho y > {self.dir}/allowed\n")
+        reader.chmod(0o755)
+        shutil.copy(SAMPLES / "bracket.step", self.dir)
+        other = Client(OCTAFRONT, cwd=self.dir, env={**os.environ, "OCTAFRONT_CAD": str(reader)})
+        self.assertIn("error", other.call("inspect", input="bracket.step"))
+        self.assertEqual(other.close(), 0)
+        self.assertTrue((self.dir / "allowed").exists(), "it ran")
+        self.assertFalse((self.outside / "made").exists())
+        self.assertEqual((self.dir / "stolen").read_text(), "")
 
     def test_calls_of_the_same_id_and_too_many(self):
         for _ in range(70):
