@@ -13,6 +13,7 @@ void run_improve(Session& session);
 void run_adapt(Session& session);
 void run_check(Session& session);
 void run_report(Session& session);
+void run_picture(Session& session);
 void run_info(Session& session);
 void run_convert(Session& session);
 

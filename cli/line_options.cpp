@@ -4,6 +4,7 @@
 
 #include "image_arguments.h"
 #include "job_options.h"
+#include "picture_options.h"
 #include "units.h"
 
 #include <algorithm>
@@ -20,7 +21,7 @@ namespace {
 constexpr std::string_view kWriters = "mesh improve adapt convert";
 constexpr std::string_view kSizers = "mesh surface size adapt";
 constexpr std::string_view kSurfaces = "mesh surface size";
-constexpr std::string_view kAll = "mesh surface repair size improve adapt convert info check report";
+constexpr std::string_view kAll = "mesh surface repair size improve adapt convert info check report picture";
 
 /// One value, or a list of them, that goes to `where(arguments)`.
 template <class Access>
@@ -195,6 +196,8 @@ std::vector<LineOption> output_options() {
        needed([](Arguments & a) -> auto& { return a.output; }), "Surface: .stl, .obj, .off or .ply"},
       {"size", kGroup, "-o,--output", "FILE", "Background grid: .vtu",
        value([](Arguments & a) -> auto& { return a.output; }), "Background grid: .vtu"},
+      {"picture", kGroup, "-o,--output", "FILE", "Picture: .png",
+       needed([](Arguments & a) -> auto& { return a.output; }), "Picture: .png"},
       {"report", kGroup, "-o,--output", "FILE", "Web page: .html, one file that needs no network",
        needed([](Arguments & a) -> auto& { return a.output; }), "Web page: .html, one file that needs no network"},
       {kWriters, kGroup, "--format", "NAME",
@@ -386,6 +389,11 @@ std::vector<LineOption> run_options() {
          if (!(seconds > 0)) throw CLI::ValidationError(option, "is a number of seconds above 0");
          a.limits.cpu_seconds = seconds;
        })},
+      {kAll, kGroup, "--within", "FOLDER",
+       "Files are read and written only in this folder and below, links followed, also those that other files name; "
+       "may "
+       "be repeated [anywhere]",
+       each([](Arguments& a, const std::string& typed) { a.limits.folders.push_back(typed); })},
       {kAll, kGroup, "-q,--quiet", "", "Print nothing but errors",
        flag([](Arguments & a) -> auto& { return a.quiet; })},
   };
@@ -404,6 +412,7 @@ const std::vector<OptionGroup>& option_groups() {
       {"Volume", "volume", ""},
       {"Improvement", "improve", ""},
       {"Requirements", "require", "A mesh that does not meet them is not written: status 4"},
+      {"Picture", "picture", ""},
       {"Adaptation", "adapt", "The boundary stays on the smooth surface that it stands for"},
       {"Several materials", "materials", "Cells between walls, or bodies of several files"},
       {"Inside", "inside", "What lies in the bodies and is part of their mesh, by the names of its files"},
@@ -422,7 +431,7 @@ const std::vector<LineOption>& line_options() {
   static const std::vector<LineOption> all = [] {
     std::vector<LineOption> list;
     for (const auto& part : {output_options(), job_options(), size_options(), body_options(), image_line_options(),
-                             adapt_options(), run_options()})
+                             adapt_options(), picture_options(), run_options()})
       list.insert(list.end(), part.begin(), part.end());
     return list;
   }();

@@ -198,6 +198,10 @@ constexpr ReportField kReport[] = {
     {"material_bins[].most", "number", ""},
     {"material_bins[].elements", "integer", ""},
     {"material_bins[].volume", "number", ""},
+    {"picture.file", "string", "that was written"},
+    {"picture.width", "integer", "pixels"},
+    {"picture.height", "integer", "pixels"},
+    {"picture.notes[]", "string", "what is not in it; of a close-up which element it shows"},
     // The run.
     {"output", "object", "the first file that was written, its format and notes"},
     {"outputs[]", "object", "all, where there are several"},
