@@ -66,6 +66,7 @@ struct Arguments {
 /// What a command works on: files that become a surface, or a mesh. `what`: in words.
 void declare_input(CLI::App& command, Arguments& arguments, const std::string& what = {});
 void declare_mesh_input(CLI::App& command, Arguments& arguments);
+void declare_two_meshes(CLI::App& command, Arguments& arguments);
 
 /// Declares the options that the command of this name takes: the rows of the library's tables
 /// (octafront/option_table.h) and of line_options.h, group by group; only those of one group, where one is named. A

@@ -2,6 +2,7 @@
 
 #include <octafront/octafront.h>
 
+#include "carrying.h"
 #include "domain.h"
 #include "estimate.h"
 #include "id_map.h"
@@ -272,6 +273,7 @@ void run_improve(Session& session) {
   check_options(a.options);
   const TetMesh mesh = read_mesh_input(session);
   check_job_on(a, mesh);
+  const std::vector<MeshField> fields = fields_to_carry(session, mesh);
   SurfaceMesh surface;
   if (!a.surface.empty()) surface = read_surface(a.surface.string(), session.context()).surface;
   const auto improved = [&] {
@@ -284,7 +286,7 @@ void run_improve(Session& session) {
     }
   };
   const Improved result = improved();
-  write_mesh_targets(session, result.mesh);
+  write_mesh_targets(session, result.mesh, carried_fields(session, fields, mesh, result.mesh, OutsideNodes::kOnwards));
   session.say(fmt::format("{}: {}\n", a.input.string(), quality_in_words(result.before)));
   session.say(fmt::format("improved: {}\n", quality_in_words(result.report.quality)));
   session.tell(result.report);
@@ -309,43 +311,6 @@ auto on_adapted_input(Session& session, const Work& work) {
   } catch (const InputError& error) {
     throw InputError(fmt::format("{}: {}", session.arguments().input.string(), error.what()));
   }
-}
-
-/// Fields of the input that are to go along.
-std::vector<MeshField> fields_to_carry(Session& session, const TetMesh& mesh) {
-  const Arguments& a = session.arguments();
-  const bool is_default = a.carry.empty() || (a.carry.size() == 1 && a.carry[0] == "all");
-  if (a.carry.size() == 1 && a.carry[0] == "none") return {};
-  if (!some_target_holds_fields(a)) {
-    if (is_default) return {};
-    throw OptionError("--carry: no output holds fields; write .vtu, .vtk, .msh, .med, .exo, .cgns or .xdmf");
-  }
-  // What was not asked for is no reason to fail.
-  if (is_default && mesh.is_second_order()) return {};
-  try {
-    FieldsOfFile found =
-        read_fields(a.input.string(), mesh, is_default ? std::vector<std::string>{} : a.carry, session.context());
-    session.say_notes("fields", found.notes);
-    return std::move(found.fields);
-  } catch (const InputError& error) {
-    if (!is_default) throw;
-    session.say_notes("fields", {fmt::format("no field goes along: {}", error.what())});
-    return {};
-  }
-}
-
-std::vector<MeshField> carried_fields(Session& session, const std::vector<MeshField>& fields, const TetMesh& before,
-                                      const AdaptedMesh& adapted) {
-  std::vector<MeshField> all;
-  Json told = Json::array();
-  for (const MeshField& field : fields) {
-    session.context().report("fields", -1);
-    all.push_back(carried(field, before, adapted));
-    told.push_back(
-        {{"name", field.name}, {"of", field.of_elements ? "elements" : "points"}, {"components", field.components}});
-  }
-  if (!all.empty()) session.found({{"carried", told}});
-  return all;
 }
 
 /// Options that mean something for tetrahedra alone.
@@ -411,7 +376,9 @@ void run_adapt(Session& session) {
     return metric ? adapt_to_metric(mesh, *metric, options, session.context(), home)
                   : adapt_existing(mesh, options, session.context(), home);
   });
-  write_mesh_targets(session, result.mesh, carried_fields(session, fields, mesh, result));
+  const KnownItems same{result.old_of_new, result.old_tet_of_new};
+  write_mesh_targets(session, result.mesh,
+                     carried_fields(session, fields, mesh, result.mesh, OutsideNodes::kOnwards, &same));
   if (!a.map_file.empty()) write_map(a.map_file, mesh, result);
   tell_adapted(session, result);
   tell_worst(session, worst_elements(result.mesh, kWorstListed));

@@ -17,10 +17,10 @@ namespace octafront::cli {
 
 namespace {
 
-constexpr std::string_view kWriters = "mesh improve adapt convert";
+constexpr std::string_view kWriters = "mesh improve adapt carry convert";
 constexpr std::string_view kSizers = "mesh surface size adapt";
 constexpr std::string_view kSurfaces = "mesh surface size";
-constexpr std::string_view kAll = "mesh surface repair size improve adapt convert info check report";
+constexpr std::string_view kAll = "mesh surface repair size improve adapt carry convert info check report";
 
 /// One value, or a list of them, that goes to `where(arguments)`.
 template <class Access>
@@ -334,12 +334,6 @@ std::vector<LineOption> adapt_options() {
        value([](Arguments & a) -> auto& { return a.field; }), "A metric made of a field of the input, with --elements"},
       {"adapt", kGroup, "--norm", "P", "The error of --from is least in the norm of L^P; 1 or more [2]",
        value([](Arguments & a) -> auto& { return a.norm; })},
-      {"adapt", kGroup, "--carry", "FIELD",
-       "Fields of the input that go along, by name and with commas between, or none: linear at points, conservative in "
-       "elements; into formats that hold fields [all]",
-       [](CLI::App& app, const LineOption& o, Arguments& a) {
-         return app.add_option(std::string(o.names), a.carry, o.help)->delimiter(',')->type_name(std::string(o.letter));
-       }},
       {"adapt", kGroup, "--save-metric", "FILE", "Where that metric is written, to look at: .vtu, or MEDIT's .sol",
        value([](Arguments & a) -> auto& { return a.metric_out; })},
       {"adapt", kGroup, "--surface", "FILE",
@@ -349,6 +343,17 @@ std::vector<LineOption> adapt_options() {
       {"adapt", kGroup, "--map", "FILE",
        "Where old vertices and elements are now: .json (two arrays) or .csv, by numbers from 0; -1: gone",
        value([](Arguments & a) -> auto& { return a.map_file; })},
+  };
+}
+
+std::vector<LineOption> field_options() {
+  return {
+      {"improve adapt carry", "Fields", "--carry", "FIELD",
+       "Fields of the input that go along, by name and with commas between, or none: linear at points, conservative in "
+       "elements; into formats that hold fields [all]",
+       [](CLI::App& app, const LineOption& o, Arguments& a) {
+         return app.add_option(std::string(o.names), a.carry, o.help)->delimiter(',')->type_name(std::string(o.letter));
+       }},
   };
 }
 
@@ -405,6 +410,7 @@ const std::vector<OptionGroup>& option_groups() {
       {"Improvement", "improve", ""},
       {"Requirements", "require", "A mesh that does not meet them is not written: status 4"},
       {"Adaptation", "adapt", "The boundary stays on the smooth surface that it stands for"},
+      {"Fields", "fields", "What is known on the mesh goes along: at points linear, in elements conservative"},
       {"Several materials", "materials", "Cells between walls, or bodies of several files"},
       {"Inside", "inside", "What lies in the bodies and is part of their mesh, by the names of its files"},
       {"Images", "images", "Voxels: a region per label, or per band of grey values"},
@@ -422,7 +428,7 @@ const std::vector<LineOption>& line_options() {
   static const std::vector<LineOption> all = [] {
     std::vector<LineOption> list;
     for (const auto& part : {output_options(), job_options(), size_options(), body_options(), image_line_options(),
-                             adapt_options(), run_options()})
+                             adapt_options(), field_options(), run_options()})
       list.insert(list.end(), part.begin(), part.end());
     return list;
   }();

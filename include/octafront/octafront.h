@@ -4,6 +4,7 @@
 
 #include <octafront/adapt.h>
 #include <octafront/cad.h>
+#include <octafront/carry.h>
 #include <octafront/complex.h>
 #include <octafront/domain.h>
 #include <octafront/error.h>

@@ -299,6 +299,20 @@ octafront_job* octafront_adapt_surface(const octafront_surface* surface, const o
  * mesh has points), or null. The mesh may be null where the task needs none. All must live until the job has ended. */
 octafront_job* octafront_metrics(const octafront_mesh* mesh, const char* json, const double* values,
                                  const double* others, size_t n, double* out, int threads);
+/** Values at the points of a mesh, or of its elements: `components` numbers for each. */
+typedef struct {
+  const char* name; /**< in reports */
+  int of_elements;
+  size_t components;
+  const double* values; /**< on the old mesh */
+  double* out;          /**< has room for those of the new mesh */
+} octafront_field;
+/** carry_fields() of octafront/carry.h, by the options' carry. `adapted` is 1 if octafront_adapt() or
+ * octafront_improve() made the mesh `now` of `before`: then values go on linearly outside. The report has "carry" and
+ * "carried". Fields, names and values must live until the job has ended. */
+octafront_job* octafront_carry(const octafront_mesh* before, const octafront_mesh* now, int adapted,
+                               const octafront_field* fields, size_t count, const octafront_options* options,
+                               int threads);
 /** -> mesh: improve_existing(); `ground`, which may be null: the surface that the boundary slides on. */
 octafront_job* octafront_improve(const octafront_mesh* mesh, const octafront_surface* ground,
                                  const octafront_options* options, int threads);

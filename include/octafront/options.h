@@ -260,6 +260,16 @@ struct AdaptOptions {
   std::string keep;
 };
 
+/// How fields go from one mesh to another (octafront/carry.h).
+struct CarryOptions {
+  /// Values of elements vary linearly inside the old elements, by least squares of what is around, limited such that no
+  /// new extremes come: of second order where they are smooth. Else they are constant there: of first order.
+  bool linear_elements = false;
+  /// Where the bodies differ, what the integral over a region lacks is spread over it. Else values stay the means over
+  /// what is shared, and the integral changes with the volume: for what is no density, such as a modulus.
+  bool keep_integrals = true;
+};
+
 /// What a mesh must keep: one that does not is not handed out, RequirementError says what it is like. Looked at last,
 /// on all elements that there are.
 struct RequireOptions {
@@ -280,6 +290,7 @@ struct Options {
   VolumeOptions volume;
   ImproveOptions improve;
   AdaptOptions adapt;
+  CarryOptions carry;
   RequireOptions require;
   /// Names of patches inside (sheets, walls between regions), separated by commas, along which the mesh is opened:
   /// split_patches() of octafront/split.h.

@@ -159,6 +159,9 @@ class Mesh:
     def plot(self, clip: Sequence[float] | None = (1, 0, 0), **keywords: Any) -> Any: ...
     def __len__(self) -> int: ...
 
+class CarriedFields(dict[str, Floats]):
+    report: dict[str, Any]
+
 class _OfTrimesh(Protocol):
     @property
     def vertices(self) -> Any: ...
@@ -199,7 +202,10 @@ def surface(points: npt.ArrayLike | Input, triangles: npt.ArrayLike | None = Non
 def size_field(points: npt.ArrayLike | Input, triangles: npt.ArrayLike | None = None, *,
 {size}) -> SizeField: ...
 def improve(mesh: Tets | Path, *, surface: Body | Path | None = None,
+    fields: Mapping[str, npt.ArrayLike] | None = None,
 {improve}) -> Mesh: ...
+def carry(old: Tets | Path, new: Tets | Path, fields: Mapping[str, npt.ArrayLike], *,
+{carry}) -> CarriedFields: ...
 @overload
 def adapt(mesh: Tets | Path, *, sizes: npt.ArrayLike | None = None, metric: npt.ArrayLike | None = None,
     fields: Mapping[str, npt.ArrayLike] | None = None,
@@ -287,7 +293,7 @@ def keywords(task):
 
 def stubs():
     text = TEMPLATE.replace("{of_images}", OF_IMAGES)
-    for task in ("mesh", "surface", "size", "improve", "adapt"):
+    for task in ("mesh", "surface", "size", "improve", "adapt", "carry"):
         text = text.replace("{" + task + "}", keywords(task))
     return text
 

@@ -27,7 +27,7 @@ from .errors import (Cancelled, Error, InputError, InternalError, MeshingError, 
 
 __version__ = _call("version").decode()
 __all__ = ["Cancelled", "Checked", "Error", "InputError", "InternalError", "Mesh", "MeshingError", "OUTSIDE",
-           "OpenCavityError", "OptionError", "OutputError", "SizeField", "Surface", "adapt", "check", "complex_of_walls",
+           "OpenCavityError", "OptionError", "OutputError", "SizeField", "Surface", "adapt", "carry", "check", "complex_of_walls",
            "errors", "formats", "image_surface", "improve", "join_bodies", "mend", "mesh", "mesh_file", "mesh_image", "metrics", "read",
            "repair", "size_field", "surface"]
 
@@ -186,11 +186,12 @@ def size_field(points, triangles=None, **keywords):
 
 
 @_takes_options("improve")
-def improve(mesh, *, surface=None, **keywords):
+def improve(mesh, *, surface=None, fields=None, **keywords):
     """The same mesh with better elements: a new Mesh. report["before"] is the quality of the old one.
 
     mesh: a valid Mesh of any tool, the name of its file, or an object of meshio, PyVista or VTK. Regions, patches, names and sets stay. The boundary stays
     too, triangle for triangle, unless `surface` is given, the Surface on which it may slide (or the name of its file).
+    fields: {name: array}, go along as those of adapt().
 
     No worse by least beta, smallest and largest dihedral angle. Raises OptionError, InputError (the first defect of the
     mesh, or that the boundary does not lie on the surface), MeshingError, Cancelled.
@@ -199,11 +200,14 @@ def improve(mesh, *, surface=None, **keywords):
     """
     settings = _Settings("improve", "improve", keywords)
     old = Mesh.read(mesh) if _is_file(mesh) else Mesh.of(mesh)
+    values = _fields.fields_on(old, fields)
     ground = Surface.read(surface) if _is_file(surface) else surface and _surface_of(surface, None)
     job = _Job("improve", old._handle, ground and ground._handle, settings.options, settings.threads,
                **settings.functions())
     report = job.run()
-    return Mesh._of(job.take("mesh"), report)
+    new = Mesh._of(job.take("mesh"), report)
+    _fields.take_along(old, new, values, settings)
+    return new
 
 
 @_takes_options("adapt")
@@ -223,8 +227,8 @@ def adapt(mesh, *, sizes=None, metric=None, fields=None, surface=None, **keyword
     surface: what walls stand for instead, where it is near them: a Surface, the name of its file, of a CAD file, whose true
         geometry they go to, or (points, triangles). It need not be closed.
     fields: {name: array}, values at the points, (n,) or (n, k), or of the tetrahedra, (m,) or (m, k): mesh.fields of the
-    new mesh has them there. At points linear in the old elements, bit for bit where a point stays; of elements such that
-    the sum of value times volume in each region stays.
+    new mesh has them there, its report what they came to before and after, as carry() has it. At points linear in the old
+    elements, bit for bit where a point stays; of elements such that the sum of value times volume in each region stays.
 
     The mesh made tells by old_points and old_tets what its points and tetrahedra were in the old one.
 
@@ -246,7 +250,7 @@ def adapt(mesh, *, sizes=None, metric=None, fields=None, surface=None, **keyword
         if not isinstance(keywords.get(names, ""), str):
             keywords[names] = ";".join(keywords[names])
     settings = _Settings("adapt", "adapt", keywords)
-    values = {name: _fields.field_on(old, name, array) for name, array in dict(fields or {}).items()}
+    values = {} if is_surface else _fields.fields_on(old, fields)
     if isinstance(surface, tuple):
         surface = _surface_of(*surface)
     ground = Surface.read(surface) if _is_file(surface) else None if surface is None else _surface_of(surface, None)
@@ -261,8 +265,30 @@ def adapt(mesh, *, sizes=None, metric=None, fields=None, surface=None, **keyword
         job = metrics._adapting("adapt_to_metric", old, ground, metric, sizes, settings)
     report = job.run()
     new = Mesh._of(job.take("mesh"), report)
-    new.fields = {name: _fields.carried(old, new, array) for name, array in values.items()}
+    _fields.take_along(old, new, values, settings)
     return new
+
+
+@_takes_options("carry")
+def carry(old, new, fields, **keywords):
+    """Fields of one mesh on another, of the same body or of one that differs: {name: array}, a CarriedFields, whose
+    `report` has of each field the integral, least and greatest value before and after ("carried"), and how the meshes lie
+    to each other ("carry").
+
+    old, new: valid Meshes, names of files, or objects of meshio, PyVista or VTK.
+    fields: {name: array}, values at the points of the old one, (n,) or (n, k), or of its tetrahedra, (m,) or (m, k).
+
+    At points linear in the old element that holds the point, outside the value at the nearest place of the old boundary.
+    Of elements conservative, by intersection: the sum of value times volume stays in each region, and no value leaves the
+    range that its region had, as long as the region's volume allows that.
+
+    Raises OptionError, InputError (the first defect of a mesh), Cancelled.
+
+    >>> octafront.carry(old, new, {"T": temperature})["T"]
+    """
+    settings = _Settings("carry", "carry", keywords)
+    old, new = (Mesh.read(mesh) if _is_file(mesh) else Mesh.of(mesh) for mesh in (old, new))
+    return _fields.carried(old, new, _fields.fields_on(old, fields), settings, False)
 
 
 def repair(points, triangles=None):

@@ -78,7 +78,7 @@ class Mesh:
     def _take(self, handle, report, sizes=None):
         self._handle, self._quality, self._sizes = handle, report.get("quality"), sizes
         self.report = report
-        self.fields = {}  # of adapt()
+        self.fields = {}  # of adapt() and improve()
 
     @classmethod
     def _of(cls, address, report, sizes=None):

@@ -384,6 +384,25 @@ std::vector<Row<Options>> adapt_rows() {
   };
 }
 
+std::vector<Row<Options>> carry_rows() {
+  const auto of = [](std::string_view name, std::string_view help) {
+    return About(name, "Fields", "improve adapt carry", help);
+  };
+  return {
+      row(
+          of("linear_elements",
+             "Fields of elements vary linearly inside old elements, limited such that no new extremes come: of second "
+             "order where they are smooth"),
+          [](auto& o) -> auto& { return o.carry.linear_elements; }),
+      opposite(
+          of("free_integrals",
+             "Where the bodies differ, nothing is spread: fields of elements keep their values, and integrals change "
+             "with the volume (a modulus, a temperature)")
+              .called("keep_integrals"),
+          [](auto& o) -> auto& { return o.carry.keep_integrals; }),
+  };
+}
+
 std::vector<Row<Options>> require_rows() {
   const auto of = [](std::string_view name, std::string_view help, std::string_view tasks) {
     return About(name, "Requirements", tasks, help);
@@ -412,8 +431,8 @@ std::vector<Row<Options>> require_rows() {
 }
 
 const std::vector<Row<Options>>& rows() {
-  static const auto all = all_of<Options>(
-      {size_rows(), surface_rows(), layer_rows(), volume_rows(), improve_rows(), adapt_rows(), require_rows()});
+  static const auto all = all_of<Options>({size_rows(), surface_rows(), layer_rows(), volume_rows(), improve_rows(),
+                                           adapt_rows(), carry_rows(), require_rows()});
   return all;
 }
 

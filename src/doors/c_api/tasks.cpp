@@ -2,6 +2,7 @@
 
 #include <octafront/adapt.h>
 #include <octafront/cad.h>
+#include <octafront/carry.h>
 #include <octafront/complex.h>
 #include <octafront/error.h>
 #include <octafront/generate.h>
@@ -309,6 +310,40 @@ octafront_job* octafront_adapt(const octafront_mesh* mesh, const octafront_surfa
       [mesh, ground, options](octafront_job& job) {
         require_indices(mesh->mesh);
         give_adapted(job, adapt_existing(mesh->mesh, job.options_of(options), job.context(), domain_of(ground)));
+      },
+      threads);
+}
+
+namespace {
+
+std::vector<MeshField> fields_from(const octafront_field* fields, std::size_t count, const TetMesh& mesh) {
+  std::vector<MeshField> all;
+  for (const octafront_field* f = fields; f != fields + count; ++f) {
+    const std::size_t items = f->of_elements != 0 ? mesh.tets.size() : mesh.points.size();
+    all.push_back({f->name, f->of_elements != 0, f->components, {f->values, f->values + items * f->components}});
+  }
+  return all;
+}
+
+}  // namespace
+
+octafront_job* octafront_carry(const octafront_mesh* before, const octafront_mesh* now, int adapted,
+                               const octafront_field* fields, size_t count, const octafront_options* options,
+                               int threads) {
+  return started(
+      [=](octafront_job& job) {
+        require_indices(before->mesh), require_indices(now->mesh);
+        const std::vector<MeshField> old = fields_from(fields, count, before->mesh);
+        const KnownItems same{now->old_of_new, now->old_tet_of_new};
+        const bool is_known = adapted != 0 && same.old_of_new.size() == now->mesh.points.size() &&
+                              same.old_tet_of_new.size() == now->mesh.tets.size();
+        const CarriedFields made =
+            carry_fields(old, before->mesh, now->mesh, job.options_of(options).carry, job.context(),
+                         adapted != 0 ? OutsideNodes::kOnwards : OutsideNodes::kNearest, is_known ? &same : nullptr);
+        job.report["carry"] = Json::parse(to_json(made.report));
+        job.report["carried"] = Json::parse(fields_to_json(made.report));
+        for (std::size_t f = 0; f < count; ++f)
+          std::copy(made.fields[f].values.begin(), made.fields[f].values.end(), fields[f].out);
       },
       threads);
 }
