@@ -106,7 +106,9 @@ def meshes_of(runs, model, quick):
     n = 3000 if quick else 20000
     source = pathlib.Path("models/clean", model)
     a, b = runs.meshed("a", source, "--elements", n), runs.meshed("b", source, "--elements", 3 * n)
-    kept, other = runs.meshed("c", source, "--keep-surface"), runs.meshed("d", source, "--keep-surface", "--gradation", .4)
+    surface = runs.folder / "surface.ply"
+    runs.run("surface", source, "-o", surface, "--elements", n)
+    kept, other = runs.meshed("c", surface, "--keep-surface"), runs.meshed("d", surface, "--keep-surface", "--gradation", .4)
     return [("finer", a, b), ("coarser", b, a), ("same triangles", kept, other)]
 
 
@@ -157,7 +159,7 @@ def cost_rows(runs, quick):
 
 ABOUT = """one thread; CPU seconds are those of the whole command, reading and writing included, while others used the machine. Each old mesh has two fields, at points
 and of elements: *smooth*, a product of a sine and a cosine with about one period over the body, and *steep*, 0 on one side of a plane through the middle and 1 on the other. *Finer* and *coarser*: 20 thousand elements and three times as many; *same
-triangles*: the input's triangles kept, another gradation inside; the head is an image of labels at 5, 6, 6.3 and 8 mm. *Integral error*: the greatest relative change of a region's integral, of both fields, constant and linear. *Mean error*: of the smooth field of
+triangles*: the same surface kept, another gradation inside; the head is an image of labels at 5, 6, 6.3 and 8 mm. *Integral error*: the greatest relative change of a region's integral, of both fields, constant and linear. *Mean error*: of the smooth field of
 elements, against its value in their middles, over the volume."""
 
 

@@ -878,7 +878,7 @@ class Running(Case):
                 "    octafront.mesh(*shapes.sphere(60, 120), size=0.008)\n"
                 "except KeyboardInterrupt:\n"
                 "    print('interrupted')\n"
-                "    print(len(octafront.mesh(*shapes.cube(), size=.5).tets) > 0)\n")
+                "    print(len(octafront.mesh(*cube(), size=.5).tets) > 0)\n")
         program = subprocess.Popen([sys.executable, "-c", code], stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True)
         self.assertEqual(program.stdout.readline(), "begun\n")
         time.sleep(0.7)
@@ -964,6 +964,25 @@ class Meshes(Case):
         self.assertTrue((new.old_points[:len(old.points)][far] == np.flatnonzero(far)).all())
         with self.assertRaises(octafront.OptionError):
             octafront.adapt(old, size=0.05, only="nobody")
+
+    def test_fields_go_to_another_mesh(self):
+        old, new = octafront.mesh(*cube(), size=0.2), octafront.mesh(*cube(), size=0.17)
+        linear, tensor = 2 * old.points - 1, np.arange(9.0 * len(old.tets)).reshape(-1, 3, 3)
+        made = octafront.carry(old, new, {"u": linear, "s": tensor}, linear_elements=True)
+        self.assertLess(np.abs(made["u"] - (2 * new.points - 1)).max(), 1e-12)
+        self.assertEqual(made["s"].shape, (len(new.tets), 3, 3))
+        of_tensor = made.report["carried"][1]
+        self.assertEqual((of_tensor["name"], of_tensor["components"], of_tensor["beyond"]), ("s", 9, 0))
+        self.assertLess(of_tensor["integral_error"], 1e-12)
+        self.assertGreaterEqual(made["s"].min(), 0)
+        self.assertEqual(made.report["carry"]["outside_nodes"], 0)
+        better = octafront.improve(old, fields={"u": linear})
+        self.assertLess(np.abs(better.fields["u"] - (2 * better.points - 1)).max(), 1e-12)
+        self.assertIn("carried", better.report)
+        with self.assertRaises(octafront.OptionError):
+            octafront.carry(old, new, {"u": linear[1:]})
+        with self.assertRaises(TypeError):
+            octafront.carry(old, new, {"u": linear}, size=1)
 
     def test_adapt_carries_fields(self):
         old = octafront.mesh(*cube(), size=0.2)

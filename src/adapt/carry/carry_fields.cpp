@@ -170,10 +170,11 @@ CarryReport report_of_meshes(const adapt::MeshPair& meshes, std::uint64_t severa
 
 void note_what_differs(CarryReport& report, const CarryOptions& options) {
   if (report.outside_nodes > 0)
-    report.notes.push_back(
-        fmt::format("{} of the new mesh outside of the old one, at most {:.3g} from it, at {}",
-                    report.outside_nodes == 1 ? "1 node lies" : fmt::format("{} nodes lie", report.outside_nodes),
-                    report.farthest, at_point(report.farthest_at)));
+    report.notes.push_back(fmt::format("{} outside of the old one, at most {:.3g} from it, at {}",
+                                       report.outside_nodes == 1
+                                           ? "1 node of the new mesh lies"
+                                           : fmt::format("{} nodes of the new mesh lie", report.outside_nodes),
+                                       report.farthest, at_point(report.farthest_at)));
   // Below that the volumes differ by rounding.
   constexpr double kToldOf = 1e-12;
   if (std::max(report.uncovered, report.lost) > kToldOf * report.volume_before)

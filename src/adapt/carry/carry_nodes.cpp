@@ -81,15 +81,25 @@ class NodeSources {
     const std::size_t n = old.components;
     std::vector<double> made(mixtures_.size() * n);
     parallel_for(mixtures_.size(), [&](std::size_t v) {
-      for (std::size_t k = 0; k < n; ++k)
-        for (std::size_t i = 0; i < 4; ++i)
-          if (const double part = mixtures_[v].parts[i]; part != 0)
-            made[v * n + k] += part * old.values[mixtures_[v].nodes[i] * n + k];
+      for (std::size_t k = 0; k < n; ++k) made[v * n + k] = mixed(mixtures_[v], old, k);
     });
     return made;
   }
 
  private:
+  /// Rounding adds no extremes either.
+  static double mixed(const Mixture& mixture, const OldValues& old, std::size_t k) {
+    double sum = 0, least = HUGE_VAL, greatest = -HUGE_VAL;
+    bool is_mean = true;
+    for (std::size_t i = 0; i < 4; ++i) {
+      const double part = mixture.parts[i], value = old.values[mixture.nodes[i] * old.components + k];
+      if (part == 0) continue;
+      sum += part * value, is_mean = is_mean && part > 0;
+      least = std::min(least, value), greatest = std::max(greatest, value);
+    }
+    return is_mean ? std::clamp(sum, least, greatest) : sum;
+  }
+
   bool find_inside(VertexIndex v) {
     const VertexIndex old = meshes_.same.old_of_new[v];
     const Vec3 p = meshes_.now.points[v];
