@@ -89,7 +89,7 @@ def pair_row(runs, body, pair, old, new):
     report, done, means = runs.carried(source, new, exact)
     linear, done_linear, means_linear = runs.carried(source, new, exact, "--linear-elements")
     fields = [f for made in (report, linear) for f in made["carried"] if f["of"] == "elements"]
-    mesh, regions = report["carry"], len(runs.run("info", new)[0].get("regions", [])) or 1
+    mesh, regions = report["carry"], len(runs.run("info", new)[0]["places"]["regions"])
     of_volume = lambda v: f"{100 * v / mesh['volume_before']:.4f} %" if abs(v) > 1e-12 * mesh["volume_before"] else "0"
     outside = [max(0, f["after"]["greatest"][0] - f["before"]["greatest"][0], f["before"]["least"][0] - f["after"]["least"][0]) for f in fields]
     points = [f for f in report["carried"] if f["of"] == "points"]
