@@ -43,6 +43,8 @@ struct Arguments {
   std::filesystem::path regions, point_sizes, size_field;  ///< files with sizes; empty: none
   std::string metric;                                      ///< FILE[:FIELD] with a metric; empty: none
   std::string field;                                       ///< of the input, of which a metric is made; empty: none
+  std::string displacement;                                ///< the field of the input that it moves by
+  std::vector<std::pair<std::string, double>> level_sets;  ///< fields of the input, and the values of their surfaces
   double norm = 2;                                         ///< p of L^p, in which that metric makes its error least
   std::filesystem::path metric_out;                        ///< where the metric is written; empty: nowhere
   Options options;

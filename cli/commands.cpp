@@ -7,6 +7,7 @@
 #include "estimate.h"
 #include "id_map.h"
 #include "inputs.h"
+#include "level_sets.h"
 #include "mesh_in_words.h"
 #include "metric_input.h"
 #include "open_cavity.h"
@@ -321,8 +322,8 @@ void refuse_for_surfaces(const Arguments& a) {
   };
   refuse(!a.options.adapt.only.empty(), "--only"), refuse(!a.map_file.empty(), "--map"),
       refuse(!a.field.empty(), "--from");
-  refuse(!a.carry.empty(), "--carry"), refuse(!a.page.empty(), "--report"),
-      refuse(!a.options.groups.empty(), "--group");
+  refuse(!a.level_sets.empty(), "--level-set"), refuse(!a.carry.empty(), "--carry"),
+      refuse(!a.page.empty(), "--report"), refuse(!a.options.groups.empty(), "--group");
 }
 
 /// Triangles alone, as files have them; the sets that they had.
@@ -363,13 +364,16 @@ void run_adapt(Session& session) {
   check_map_target(a.map_file);
   check_page_target(a.page);
   check_metric_options(a);
+  if (!a.level_sets.empty() && !a.map_file.empty())
+    throw OptionError("--map: where elements are divided along --level-set no old number is kept");
   if (!is_tet_mesh_file(a.input.string()) || !holds_tetrahedra(a.input.string(), session.context()))
     return adapt_surface_input(session);
   const Options options = checked_options_of(session);
-  const TetMesh mesh = read_mesh_input(session);
-  check_job_on(a, mesh);
+  TetMesh mesh = read_mesh_input(session);
+  if (a.level_sets.empty()) check_job_on(a, mesh);
   const std::optional<MetricMesh> metric = metric_asked_for(session, mesh);
-  const std::vector<MeshField> fields = fields_to_carry(session, mesh);
+  std::vector<MeshField> fields = fields_to_carry(session, mesh);
+  if (!a.level_sets.empty()) cut_along_fields(session, mesh, fields);
   const std::optional<Domain> ground = open_ground(session);
   const Domain* home = ground ? &*ground : nullptr;
   const AdaptedMesh result = on_adapted_input(session, [&] {

@@ -12,6 +12,7 @@ void run_size(Session& session);
 void run_improve(Session& session);
 void run_adapt(Session& session);
 void run_carry(Session& session);
+void run_move(Session& session);
 void run_check(Session& session);
 void run_report(Session& session);
 void run_info(Session& session);

@@ -39,7 +39,7 @@ bool asks_for_fields(const Arguments& a) {
 
 void check_asked_fields(const Arguments& a) {
   std::vector<std::string> names;
-  const bool may_carry = a.command == "adapt" || a.command == "improve" || a.command == "carry";
+  const bool may_carry = a.command == "adapt" || a.command == "improve" || a.command == "carry" || a.command == "move";
   for (const auto& [file, name] : a.samples) {
     if (!is_image(file)) throw InputError(fmt::format("{}: --sample needs an image, and this is none", file));
     names.push_back(name);

@@ -27,7 +27,7 @@ struct LevelSetReport {
   std::string name;
   std::uint64_t moved = 0;      ///< points that went to the surface
   std::uint64_t divided = 0;    ///< edges that got a point on it
-  std::uint64_t on = 0;         ///< points that were taken for points of it where no valid element was possible else
+  std::uint64_t on = 0;         ///< that were taken for points of it: very near, and not to be moved
   std::uint64_t elements = 0;   ///< below the level
   double volume = 0;            ///< of them
   std::uint64_t triangles = 0;  ///< of its surface between regions
@@ -49,9 +49,11 @@ std::string to_json(const std::vector<LevelSetReport>& reports);
 /// its region. Where there are several regions, each is divided, `NAME_inside` the part within. The surface between
 /// regions is a patch, NAME_surface.
 ///
-/// Inner points that are near to the surface along an edge go there where elements stay positive and sound; all edges
-/// that cross it then get a point on it, and elements are divided from their lowest points, so neighbours match. Where
-/// rounding would turn an element around, a point near by is taken for one on the surface. All elements are positive by
+/// Points that are near to the surface along an edge go there where elements stay positive and sound (those of smooth
+/// walls along these; on interfaces, curves and in sets of nodes none does); one that cannot, with the surface within a
+/// tenth of an edge, is taken for a point of it. All edges that still cross it then get a point there, and elements are
+/// divided from their lowest points, so neighbours match. Where rounding would turn an element around, a point near by
+/// is taken for one on the surface, too. All elements are positive by
 /// exact sign, all faces match (first_defect). Patches, curves, sets and names go along; what is second order becomes
 /// linear. Elements at the surface may be as flat as chance makes them: adapt_to_metric() makes them sound, with the
 /// surface kept.

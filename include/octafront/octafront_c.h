@@ -299,6 +299,16 @@ octafront_job* octafront_adapt_surface(const octafront_surface* surface, const o
  * mesh has points), or null. The mesh may be null where the task needs none. All must live until the job has ended. */
 octafront_job* octafront_metrics(const octafront_mesh* mesh, const char* json, const double* values,
                                  const double* others, size_t n, double* out, int threads);
+/** LevelSet of octafront/level_set.h: a value at each point of a mesh, and that of the surface. */
+typedef struct {
+  const char* name;
+  const double* values;
+  double level;
+} octafront_level_set;
+/** -> mesh: cut_along() of octafront/level_set.h, by the options' least_piece. The report has "level_sets". Level sets,
+ * names and values must live until the job has ended. */
+octafront_job* octafront_cut(const octafront_mesh* mesh, const octafront_level_set* level_sets, size_t count,
+                             const octafront_options* options, int threads);
 /** Values at the points of a mesh, or of its elements: `components` numbers for each. */
 typedef struct {
   const char* name; /**< in reports */

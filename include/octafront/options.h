@@ -258,6 +258,8 @@ struct AdaptOptions {
   /// their places; of sets RequiredVertices, RequiredEdges, RequiredTriangles, RequiredTetrahedra and Corners, as MEDIT
   /// has them, in any case. Lengths grow from what stays.
   std::string keep;
+  /// Of a mesh that is cut along level sets (octafront/level_set.h): LevelSetOptions::least_piece; >= 0.
+  double least_piece = 0;
 };
 
 /// How fields go from one mesh to another (octafront/carry.h).
@@ -268,6 +270,11 @@ struct CarryOptions {
   /// Where the bodies differ, what the integral over a region lacks is spread over it. Else values stay the means over
   /// what is shared, and the integral changes with the volume: for what is no density, such as a modulus.
   bool keep_integrals = true;
+};
+
+/// How a mesh is moved (octafront/move.h).
+struct MoveOptions {
+  double least_quality = 0.2;  ///< beta (3 r / R) below which elements are mended between steps, in (0, 0.6]
 };
 
 /// What a mesh must keep: one that does not is not handed out, RequirementError says what it is like. Looked at last,
@@ -291,6 +298,7 @@ struct Options {
   ImproveOptions improve;
   AdaptOptions adapt;
   CarryOptions carry;
+  MoveOptions move;
   RequireOptions require;
   /// Names of patches inside (sheets, walls between regions), separated by commas, along which the mesh is opened:
   /// split_patches() of octafront/split.h.

@@ -210,6 +210,7 @@ def carry(old: Tets | Path, new: Tets | Path, fields: Mapping[str, npt.ArrayLike
 def adapt(mesh: Tets | Path, *, sizes: npt.ArrayLike | None = None, metric: npt.ArrayLike | None = None,
     fields: Mapping[str, npt.ArrayLike] | None = None,
     surface: Body | Path | tuple[npt.ArrayLike, npt.ArrayLike] | None = None,
+    level_sets: Mapping[str, npt.ArrayLike | tuple[npt.ArrayLike, float]] | None = None,
 {adapt}) -> Mesh: ...
 @overload
 def adapt(mesh: Surface, *, sizes: npt.ArrayLike | None = None, metric: npt.ArrayLike | None = None,

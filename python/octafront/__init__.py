@@ -13,7 +13,7 @@ import inspect as _inspect
 import json as _json
 import os as _os
 
-from . import _complexes, _fields, errors, metrics
+from . import _complexes, _fields, _level_sets, errors, metrics
 from ._images import is_file as _is_file, surface_of_image as _surface_of_image
 from ._intake import opened as _opened
 from ._jobs import Job as _Job
@@ -210,8 +210,12 @@ def improve(mesh, *, surface=None, fields=None, **keywords):
     return new
 
 
+_SIZES_OF_ADAPT = {"size", "size_field", "size_of", "size_near", "elements", "curvature", "gap", "through", "regions", "point_sizes",
+                   "automatic_factor", "interior", "chord_error", "feature_elements", "facets"}
+
+
 @_takes_options("adapt")
-def adapt(mesh, *, sizes=None, metric=None, fields=None, surface=None, **keywords):
+def adapt(mesh, *, sizes=None, metric=None, fields=None, surface=None, level_sets=None, **keywords):
     """The mesh changed until its edges are as long as the sizes want: a new Mesh. report["fit"] says how well it fits.
 
     mesh: a valid Mesh of any tool, the name of its file, or an object of meshio, PyVista or VTK. Its boundary stays on the smooth surface that it stands
@@ -230,6 +234,10 @@ def adapt(mesh, *, sizes=None, metric=None, fields=None, surface=None, **keyword
     new mesh has them there, its report what they came to before and after, as carry() has it. At points linear in the old
     elements, bit for bit where a point stays; of elements such that the sum of value times volume in each region stays.
 
+    level_sets: {name: values at the points, or (values, level)}: the surface where they have the level [0] becomes faces, a
+    region of the name below it, a patch NAME_surface; the first that holds a place names its region. Sizes stay unless
+    others are asked for. report["level_sets"] says what was cut; old_points and old_tets are then of the mesh that was cut.
+
     The mesh made tells by old_points and old_tets what its points and tetrahedra were in the old one.
 
     Raises OptionError, InputError (the first defect of the mesh; wedges, pyramids, periodic faces), MeshingError,
@@ -240,6 +248,11 @@ def adapt(mesh, *, sizes=None, metric=None, fields=None, surface=None, **keyword
     """
     old = read(mesh) if _is_file(mesh) else mesh if isinstance(mesh, Surface) else Mesh.of(mesh)
     is_surface = isinstance(old, Surface)
+    if level_sets:
+        if is_surface or sizes is not None and "size_field" in keywords:
+            raise OptionError("`level_sets` are for meshes of tetrahedra, beside one field of sizes")
+        if sizes is None and metric is None and not set(keywords) & _SIZES_OF_ADAPT:
+            sizes = _level_sets.lengths_at_points(old)
     if sizes is not None:
         if "size_field" in keywords:
             raise OptionError("`sizes` and `size_field` are two fields of sizes; give one")
@@ -251,6 +264,12 @@ def adapt(mesh, *, sizes=None, metric=None, fields=None, surface=None, **keyword
             keywords[names] = ";".join(keywords[names])
     settings = _Settings("adapt", "adapt", keywords)
     values = {} if is_surface else _fields.fields_on(old, fields)
+    report_of_cut = {}
+    if level_sets:
+        whole, old = old, _level_sets.cut(old, level_sets, settings, Mesh._of)
+        values, report_of_cut = _level_sets.carried_to(whole, old, values, settings), old.report
+        if metric is not None:
+            metric = _level_sets.carried_to(whole, old, {"metric": _fields.field_on(whole, "metric", metric)}, settings)["metric"]
     if isinstance(surface, tuple):
         surface = _surface_of(*surface)
     ground = Surface.read(surface) if _is_file(surface) else None if surface is None else _surface_of(surface, None)
@@ -266,6 +285,7 @@ def adapt(mesh, *, sizes=None, metric=None, fields=None, surface=None, **keyword
     report = job.run()
     new = Mesh._of(job.take("mesh"), report)
     _fields.take_along(old, new, values, settings)
+    new.report.update(report_of_cut)
     return new
 
 

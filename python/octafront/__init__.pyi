@@ -145,6 +145,9 @@ class Mesh:
     def plot(self, clip: Sequence[float] | None = (1, 0, 0), **keywords: Any) -> Any: ...
     def __len__(self) -> int: ...
 
+class CarriedFields(dict[str, Floats]):
+    report: dict[str, Any]
+
 class _OfTrimesh(Protocol):
     @property
     def vertices(self) -> Any: ...
@@ -662,6 +665,7 @@ def size_field(points: npt.ArrayLike | Input, triangles: npt.ArrayLike | None = 
     progress: Progress | None = None,
     threads: int = 0) -> SizeField: ...
 def improve(mesh: Tets | Path, *, surface: Body | Path | None = None,
+    fields: Mapping[str, npt.ArrayLike] | None = None,
     feature_angle: float | None = None,
     improve: Literal['none', 'paper', 'fast', 'default', 'best'] = 'default',
     objective: Literal['balanced', 'beta', 'min-dihedral', 'max-dihedral', 'mean-ratio', 'solver'] = 'balanced',
@@ -671,11 +675,18 @@ def improve(mesh: Tets | Path, *, surface: Body | Path | None = None,
     improve_time: float | None = None,
     order: int = 1,
     no_bridging: bool = False,
+    linear_elements: bool = False,
+    free_integrals: bool = False,
     require_volume: float | None = None,
     require_angle: float | None = None,
     after_pass: Callable[[str, dict[str, Any]], object] | None = None,
     progress: Progress | None = None,
     threads: int = 0) -> Mesh: ...
+def carry(old: Tets | Path, new: Tets | Path, fields: Mapping[str, npt.ArrayLike], *,
+    linear_elements: bool = False,
+    free_integrals: bool = False,
+    progress: Progress | None = None,
+    threads: int = 0) -> CarriedFields: ...
 @overload
 def adapt(mesh: Tets | Path, *, sizes: npt.ArrayLike | None = None, metric: npt.ArrayLike | None = None,
     fields: Mapping[str, npt.ArrayLike] | None = None,
@@ -700,6 +711,8 @@ def adapt(mesh: Tets | Path, *, sizes: npt.ArrayLike | None = None, metric: npt.
     only: str | Sequence[str] = '',
     halo: int = 2,
     keep: str | Sequence[str] = '',
+    linear_elements: bool = False,
+    free_integrals: bool = False,
     require_volume: float | None = None,
     require_angle: float | None = None,
     require_size: float | None = None,

@@ -195,7 +195,7 @@ CutMesh cut_along(const TetMesh& mesh, std::span<const LevelSet> level_sets, con
     context.check();
     LevelSetReport& report = made.level_sets.emplace_back();
     report.name = level_sets[s].name;
-    report.moved = move_to_surface(state, s);
+    move_to_surface(state, s, report);
     divide_along(state, s, report);
   }
   drop_pieces(state, options.least_piece, made.level_sets);

@@ -22,8 +22,9 @@ struct CutState {
   std::vector<std::uint32_t> inside;        ///< per tet the first level set that it is below of; kNone: none
 };
 
-/// Points near the surface of the level set go there, along the edge on which it is nearest, where they may.
-std::uint64_t move_to_surface(CutState& state, std::size_t level_set);
+/// Points near the surface of the level set go there, along the edge on which it is nearest, where they may; what is
+/// very near and may not is taken for a point of it.
+void move_to_surface(CutState& state, std::size_t level_set, LevelSetReport& report);
 
 /// Divides all elements that the surface of the level set crosses, and enters which lie inside.
 void divide_along(CutState& state, std::size_t level_set, LevelSetReport& report);

@@ -39,7 +39,7 @@ class MeshDivider {
   void divide(LevelSetReport& report) {
     find_crossings();
     while (!divide_tets()) find_crossings();
-    report.divided = edges_.size(), report.on = on_;
+    report.divided = edges_.size(), report.on += on_;
     add_points();
     divide_faces(mesh_.boundary, 0), divide_faces(mesh_.interfaces, old_boundary_);
     divide_curves();

@@ -8,6 +8,7 @@
 #include <octafront/generate.h>
 #include <octafront/improve_existing.h>
 #include <octafront/io.h>
+#include <octafront/level_set.h>
 #include <octafront/option_table.h>
 #include <octafront/repair.h>
 #include <octafront/report_page.h>
@@ -326,6 +327,21 @@ std::vector<MeshField> fields_from(const octafront_field* fields, std::size_t co
 }
 
 }  // namespace
+
+octafront_job* octafront_cut(const octafront_mesh* mesh, const octafront_level_set* level_sets, size_t count,
+                             const octafront_options* options, int threads) {
+  return started(
+      [=](octafront_job& job) {
+        require_indices(mesh->mesh);
+        std::vector<LevelSet> sets;
+        for (const octafront_level_set* s = level_sets; s != level_sets + count; ++s)
+          sets.push_back({s->name, {s->values, s->values + mesh->mesh.points.size()}, s->level});
+        CutMesh made = cut_along(mesh->mesh, sets, {job.options_of(options).adapt.least_piece}, job.context());
+        job.report["level_sets"] = Json::parse(to_json(made.level_sets));
+        give(job, std::move(made.mesh));
+      },
+      threads);
+}
 
 octafront_job* octafront_carry(const octafront_mesh* before, const octafront_mesh* now, int adapted,
                                const octafront_field* fields, size_t count, const octafront_options* options,

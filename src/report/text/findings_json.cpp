@@ -1,5 +1,7 @@
 #include <octafront/adapt.h>
 #include <octafront/carry.h>
+#include <octafront/level_set.h>
+#include <octafront/move.h>
 #include <octafront/report.h>
 
 #include <nlohmann/json.hpp>
@@ -103,6 +105,34 @@ std::string to_json(const CarryReport& r) {
               {"by_region", r.by_region},
               {"notes", r.notes}}
       .dump();
+}
+
+std::string to_json(const std::vector<LevelSetReport>& reports) {
+  Json all = Json::array();
+  for (const LevelSetReport& r : reports)
+    all.push_back({{"name", r.name},
+                   {"moved", r.moved},
+                   {"divided", r.divided},
+                   {"on", r.on},
+                   {"elements", r.elements},
+                   {"volume", r.volume},
+                   {"triangles", r.triangles},
+                   {"area", r.area},
+                   {"pieces", r.pieces},
+                   {"dropped", r.dropped}});
+  return all.dump(2, ' ', false, Json::error_handler_t::replace);
+}
+
+std::string to_json(const std::vector<MoveStep>& history) {
+  Json all = Json::array();
+  for (const MoveStep& s : history)
+    all.push_back({{"fraction", s.fraction},
+                   {"change", s.change},
+                   {"elements", s.elements},
+                   {"beta_min", s.beta_min},
+                   {"beta_mean", s.beta_mean},
+                   {"volume", s.volume}});
+  return all.dump(2, ' ', false, Json::error_handler_t::replace);
 }
 
 std::string fields_to_json(const CarryReport& report) {
