@@ -323,6 +323,14 @@ typedef struct {
 octafront_job* octafront_carry(const octafront_mesh* before, const octafront_mesh* now, int adapted,
                                const octafront_field* fields, size_t count, const octafront_options* options,
                                int threads);
+/** -> mesh: move_mesh() of octafront/move.h, by three numbers for each point. The report has "history". The fields,
+ * whose `out` is not looked at, are on the new mesh what octafront_mesh_field() gives. All must live until the job has
+ * ended.
+ */
+octafront_job* octafront_move(const octafront_mesh* mesh, const double* displacement, const octafront_field* fields,
+                              size_t count, const octafront_options* options, int threads);
+/** Of what octafront_move() left: the values of the i-th field that it was given, a row for each point or element. */
+int octafront_mesh_field(const octafront_mesh* mesh, size_t i, octafront_array* values);
 /** -> mesh: improve_existing(); `ground`, which may be null: the surface that the boundary slides on. */
 octafront_job* octafront_improve(const octafront_mesh* mesh, const octafront_surface* ground,
                                  const octafront_options* options, int threads);

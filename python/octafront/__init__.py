@@ -28,7 +28,7 @@ from .errors import (Cancelled, Error, InputError, InternalError, MeshingError, 
 __version__ = _call("version").decode()
 __all__ = ["Cancelled", "Checked", "Error", "InputError", "InternalError", "Mesh", "MeshingError", "OUTSIDE",
            "OpenCavityError", "OptionError", "OutputError", "SizeField", "Surface", "adapt", "carry", "check", "complex_of_walls",
-           "errors", "formats", "image_surface", "improve", "join_bodies", "mend", "mesh", "mesh_file", "mesh_image", "metrics", "read",
+           "errors", "formats", "image_surface", "improve", "join_bodies", "mend", "mesh", "mesh_file", "mesh_image", "metrics", "move", "read",
            "repair", "size_field", "surface"]
 
 
@@ -309,6 +309,24 @@ def carry(old, new, fields, **keywords):
     settings = _Settings("carry", "carry", keywords)
     old, new = (Mesh.read(mesh) if _is_file(mesh) else Mesh.of(mesh) for mesh in (old, new))
     return _fields.carried(old, new, _fields.fields_on(old, fields), settings, False)
+
+
+@_takes_options("move")
+def move(mesh, displacement, *, fields=None, **keywords):
+    """The mesh moved by a displacement, (n, 3) at its points, and mended on the way: a new Mesh. report["history"] has the
+    steps: which part of the motion was done, whether the mesh was "moved", "improved" or "adapted", and how good it is.
+
+    mesh: a valid Mesh, the name of its file, or an object of meshio, PyVista or VTK. Names, sets and `fields`, {name: array}
+    as of adapt(), go along: mesh.fields of the new mesh. Steps are as long as elements stay positive and sound; below
+    `least_quality` they are improved, then the mesh is adapted to the lengths that it had.
+
+    Raises OptionError, InputError, MeshingError (the body would touch itself: where, and how far it can go), Cancelled.
+
+    >>> octafront.move(mesh, 0.1 * u, fields={"T": temperature}).fields["T"]
+    """
+    settings = _Settings("move", "move", keywords)
+    old = Mesh.read(mesh) if _is_file(mesh) else Mesh.of(mesh)
+    return _fields.moved(old, displacement, _fields.fields_on(old, fields), settings, Mesh._of)
 
 
 def repair(points, triangles=None):

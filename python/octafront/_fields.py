@@ -4,7 +4,7 @@ import ctypes
 
 from . import errors
 from ._jobs import Job
-from ._library import pointer
+from ._library import Array, demand, pointer
 from ._numpy import np
 from ._surface import array_of
 
@@ -53,6 +53,28 @@ def carried(old, new, fields, settings, adapted):
     job = Job("carry", old._handle, new._handle, int(adapted), ctypes.cast(rows, ctypes.c_void_p), count, settings.options,
               settings.threads, progress=settings.progress)
     return CarriedFields(made, job.run())
+
+
+def moved(mesh, displacement, fields, settings, make):
+    """The mesh moved by (n, 3) displacements, as make(address, report) has it, with its fields."""
+    by = np.ascontiguousarray(array_of(displacement, "the displacement", np.float64))
+    if by.shape != (len(mesh.points), 3):
+        raise errors.OptionError(f"the displacement has the shape {by.shape}: it needs three numbers for each of {len(mesh.points)} points")
+    kept = [(name, values) for name, values in fields.items() if values.size]
+    rows = (_Field * max(1, len(kept)))()
+    for row, (name, values) in enumerate(kept):
+        rows[row] = _Field(str(name).encode(), int(len(values) != len(mesh.points)), int(np.prod(values.shape[1:], dtype=np.int64)),
+                           pointer(values), None)
+    job = Job("move", mesh._handle, pointer(by), ctypes.cast(rows, ctypes.c_void_p), len(kept), settings.options, settings.threads,
+              progress=settings.progress)
+    report = job.run()
+    new = make(job.take("mesh"), report)
+    for row, (name, values) in enumerate(kept):
+        found = Array()
+        demand("mesh_field", new._handle, row, ctypes.byref(found))
+        flat = np.ctypeslib.as_array(ctypes.cast(found.data, ctypes.POINTER(ctypes.c_double)), (found.rows, found.columns))
+        new.fields[name] = flat.copy().reshape(-1, *values.shape[1:])
+    return new
 
 
 def take_along(old, new, fields, settings):

@@ -95,6 +95,8 @@ _PROTOTYPES = {
     "generate_sizes": (_handle, _handle, _handle, _whole), "improve": (_handle, _handle, _handle, _handle, _whole),
     "adapt": (_handle, _handle, _handle, _handle, _whole),
     "carry_field": (_whole, _handle, _handle, _whole, _size, _pointer, _pointer),
+    "move": (_handle, _handle, _pointer, _pointer, _size, _handle, _whole),
+    "mesh_field": (_whole, _handle, _size, ctypes.POINTER(Array)),
     "cut": (_handle, _handle, _pointer, _size, _handle, _whole),
     "carry": (_handle, _handle, _handle, _whole, _pointer, _size, _handle, _whole),
     "adapt_surface": (_handle, _handle, _handle, _pointer, _size, _handle, _whole),

@@ -315,6 +315,11 @@ class Mesh:
         import octafront
         return octafront.adapt(self, sizes=sizes, metric=metric, **keywords)
 
+    def move(self, displacement, *, fields=None, **keywords):
+        """octafront.move() of this mesh: a new Mesh whose points have gone by (n, 3) displacements."""
+        import octafront
+        return octafront.move(self, displacement, fields=fields, **keywords)
+
     def save_page(self, path):
         """Writes a web page that shows the mesh in 3D and its report: one file, which opens without a network. Elements can
         be coloured by their size against the one wanted if mesh() made it. Raises OutputError."""

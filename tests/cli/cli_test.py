@@ -594,6 +594,45 @@ class CommandLine(unittest.TestCase):
                                     (("carry", old, new, "-o", new), 2, "overwritten"), (("carry", old, new, "-o", out, "--carry", "nosuch"), 3, "nosuch")):
             self.assertIn(said, self.run_cli(*words, status=status).stderr)
 
+    def test_level_sets_become_faces(self):
+        start, out, report = self.dir / "in.vtu", self.dir / "out.vtu", self.dir / "r.json"
+        self.run_cli("mesh", SAMPLES / "bracket.stl", "-o", start, "--size", 4, "--field", "phi=sqrt((x-5)^2+y^2+(z-4)^2)-9", "--field", "low=z-3")
+        done = self.run_cli("adapt", start, "--level-set", "phi", "--level-set", "low=.2", "-o", out, "--json", report)
+        self.assertIn("between regions", done.stdout)
+        told = json.loads(report.read_text())
+        self.assertEqual([r["name"] for r in told["regions"]], ["outside", "phi", "low"])
+        self.assertEqual([c["name"] for c in told["level_sets"]], ["phi", "low"])
+        self.assertLess(max(f["integral_error"] for f in told["carried"]), 1e-12)
+        self.assertIn("phi_surface", self.run_cli("check", out).stdout)
+        for words, status in ((("--level-set", "nosuch"), 3), (("--level-set", "phi=x"), 2), (("--level-set", "phi", "--map", self.dir / "m.csv"), 2),
+                              (("--level-set", "phi", "--level-set", "phi=1"), 2), (("--level-set", "phi", "--least-piece", "-1"), 2)):
+            self.run_cli("adapt", start, "-o", self.dir / "x.vtu", *words, status=status)
+        self.assertNotIn("x.vtu", self.files())
+
+    def test_moves_by_a_field(self):
+        bare, start, out, report = (self.dir / name for name in ("a.vtk", "in.vtk", "out.vtu", "r.json"))
+        self.run_cli("mesh", SAMPLES / "bracket.stl", "-o", bare, "--size", 8, "--ascii")
+        text = bare.read_text()
+        count = int(text.split("POINTS ")[1].split()[0])
+        xyz = [float(w) for w in text.split("POINTS ")[1].split()[2:2 + 3 * count]]
+
+        def moved(name, row, status=0):
+            rows = "\n".join(row(*xyz[i:i + 3]) for i in range(0, 3 * count, 3))
+            start.write_text(text.partition("POINT_DATA")[0] + f"POINT_DATA {count}\nFIELD f 2\n{name} 3 {count} double\n{rows}\n"
+                             f"x 1 {count} double\n" + "\n".join(map(repr, xyz[0::3])) + "\n")
+            return self.run_cli("move", start, "--displacement", "u", "-o", out, "--json", report, status=status)
+        moved("u", lambda x, y, z: f"{2 * x!r} 0 0")
+        told = json.loads(report.read_text())
+        self.assertEqual(told["history"][-1]["fraction"], 1)
+        self.assertEqual([f["name"] for f in told.get("carried", [{"name": "x"}])], ["x"])
+        volume = json.loads(self.run_cli("check", bare, "--json", "-").stdout)["volume"]
+        self.assertAlmostEqual(told["history"][-1]["volume"] / volume, 3, delta=0.03)
+        out.unlink()
+        self.assertIn("cannot follow", moved("u", lambda x, y, z: f"{-2 * x!r} 0 0", status=4).stderr)
+        self.assertIn("no field", moved("v", lambda x, y, z: "0 0 0", status=3).stderr)
+        self.run_cli("move", start, "-o", out, status=2)
+        self.assertNotIn(out.name, self.files())
+
     def test_carries_vectors_of_elements(self):
         old = self.dir / "old.vtk"
         old.write_text("""# vtk DataFile Version 3.0

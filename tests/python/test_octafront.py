@@ -984,6 +984,34 @@ class Meshes(Case):
         with self.assertRaises(TypeError):
             octafront.carry(old, new, {"u": linear}, size=1)
 
+    def test_meshes_move(self):
+        old = octafront.mesh(*cube(), size=0.2)
+        stretch = old.points * [8, 0, 0]
+        stress = np.arange(6.0 * len(old.tets)).reshape(-1, 6)
+        new = old.move(stretch, fields={"x": old.points[:, 0], "s": stress})
+        self.assertEqual(new.report["history"][-1]["fraction"], 1)
+        self.assertAlmostEqual(new.report["history"][-1]["volume"], 9 * abs(np.prod(np.ptp(old.points, axis=0))), places=9)
+        self.assertLess(np.abs(9 * new.fields["x"] - new.points[:, 0]).max(), 1e-9)
+        self.assertEqual(new.fields["s"].shape, (len(new.tets), 6))
+        with self.assertRaises(octafront.OptionError):
+            old.move(stretch[1:])
+        with self.assertRaises(octafront.MeshingError):
+            old.move(-2 * old.points * [1, 0, 0])
+
+    def test_level_sets_become_faces(self):
+        old = octafront.mesh(*cube(), size=0.15)
+        phi = np.linalg.norm(old.points - old.points.mean(0), axis=1)
+        new = octafront.adapt(old, level_sets={"ball": (phi, 0.3)}, fields={"u": 2 * old.points - 1})
+        self.assertEqual(new.names["regions"], ["outside", "ball"])
+        self.assertIn("ball_surface", new.names["patches"])
+        self.assertLess(np.abs(new.fields["u"] - (2 * new.points - 1)).max(), 1e-12)
+        self.assertEqual([cut["name"] for cut in new.report["level_sets"]], ["ball"])
+        self.assertGreater(new.quality["dihedral_min_degrees"], 12)
+        both = octafront.adapt(old, level_sets={"ball": (phi, 0.3), "low": old.points[:, 2] - 0.1}, size=0.12)
+        self.assertEqual(both.names["regions"], ["outside", "ball", "low"])
+        with self.assertRaises(octafront.OptionError):
+            octafront.adapt(old, level_sets={"ball": phi[1:]})
+
     def test_adapt_carries_fields(self):
         old = octafront.mesh(*cube(), size=0.2)
         linear = 2 * old.points - 1

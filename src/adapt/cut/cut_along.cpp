@@ -137,7 +137,8 @@ class NewWalls {
     const auto patches = first_free_patch(mesh);
     if (mesh.interface_patch.empty()) mesh.interface_patch.assign(mesh.interfaces.size(), 0);
     for (HalfFace h = 0; h < across.size(); ++h) {
-      if (across[h] == kNone || across[h] < h || mesh.region[h / 4] == mesh.region[across[h] / 4]) continue;
+      // Walls that the mesh had are its own business.
+      if (across[h] == kNone || across[h] < h || state_.inside[h / 4] == state_.inside[across[h] / 4]) continue;
       const Triangle face = corners_of(mesh.tets, h);
       if (!known.group_of(face).empty()) continue;
       const std::uint32_t set = std::min(state_.inside[h / 4], state_.inside[across[h] / 4]);

@@ -9,6 +9,7 @@
 #include <octafront/improve_existing.h>
 #include <octafront/io.h>
 #include <octafront/level_set.h>
+#include <octafront/move.h>
 #include <octafront/option_table.h>
 #include <octafront/repair.h>
 #include <octafront/report_page.h>
@@ -362,6 +363,31 @@ octafront_job* octafront_carry(const octafront_mesh* before, const octafront_mes
           std::copy(made.fields[f].values.begin(), made.fields[f].values.end(), fields[f].out);
       },
       threads);
+}
+
+octafront_job* octafront_move(const octafront_mesh* mesh, const double* displacement, const octafront_field* fields,
+                              size_t count, const octafront_options* options, int threads) {
+  return started(
+      [=](octafront_job& job) {
+        require_indices(mesh->mesh);
+        std::vector<Vec3> by;
+        for (std::size_t v = 0; v < mesh->mesh.points.size(); ++v)
+          by.push_back({displacement[3 * v], displacement[3 * v + 1], displacement[3 * v + 2]});
+        MovedMesh moved =
+            move_mesh(mesh->mesh, by, fields_from(fields, count, mesh->mesh), job.options_of(options), job.context());
+        job.report["history"] = Json::parse(to_json(moved.history));
+        give(job, std::move(moved.mesh));
+        job.mesh->fields = std::move(moved.fields);
+      },
+      threads);
+}
+
+int octafront_mesh_field(const octafront_mesh* mesh, size_t i, octafront_array* values) {
+  return guarded([&] {
+    const MeshField& field = mesh->fields.at(i);
+    *values = {field.values.data(), field.values.size() / field.components,
+               static_cast<std::uint32_t>(field.components), OCTAFRONT_F64};
+  });
 }
 
 octafront_job* octafront_repair(const octafront_surface* surface) {

@@ -31,9 +31,9 @@ double volume_of_mesh_moved(const TetMesh& mesh) {
   return sum;
 }
 
-/// A bar of eight cubes along x, with patches of its ends.
+/// A bar along x, with patches of its ends.
 TetMesh bar() {
-  TetMesh mesh = kuhn_cube(4);
+  TetMesh mesh = kuhn_cube(8);
   for (Vec3& p : mesh.points) p.x *= 4;
   mesh.patch.clear();
   for (const Triangle& f : mesh.boundary) {
@@ -93,6 +93,22 @@ TEST(MoveMesh, AStretchedBlockGetsElementsOfItsOldLengths) {
   EXPECT_GT(moved.history.back().beta_min, 0.2);
 }
 
+TEST(MoveMesh, AFlattenedBlockIsMendedOnTheWay) {
+  const TetMesh mesh = kuhn_cube(4);
+  const MovedMesh moved = move_mesh(mesh, displacement_on(mesh, [](Vec3 p) {
+                                      return Vec3{0.06 * p.x, 4 * p.y, 4 * p.z};
+                                    }));
+  EXPECT_EQ(first_defect(moved.mesh), std::nullopt);
+  EXPECT_NEAR(volume_of_mesh_moved(moved.mesh), 0.96, 1e-9);
+  EXPECT_GT(moved.history.size(), 1u);
+  for (std::size_t i = 1; i < moved.history.size(); ++i)
+    EXPECT_GT(moved.history[i].fraction, moved.history[i - 1].fraction);
+  EXPECT_EQ(moved.history.back().fraction, 1);
+  Box3 box;
+  for (const Vec3& p : moved.mesh.points) box.add(p);
+  EXPECT_LT(length(box.hi - Vec3{0.06, 4, 4}) + length(box.lo), 1e-12);
+}
+
 TEST(MoveMesh, ContactIsRefusedWithItsPlaceAndHowFarItGoes) {
   TetMesh two = kuhn_cube(2);
   const TetMesh one = two;
@@ -100,7 +116,7 @@ TEST(MoveMesh, ContactIsRefusedWithItsPlaceAndHowFarItGoes) {
   for (const Vec3& p : one.points) two.points.push_back(p + Vec3{1.25, 0.1, 0.1});
   for (Tet t : one.tets) two.tets.push_back({t[0] + first, t[1] + first, t[2] + first, t[3] + first});
   for (const Triangle& f : one.boundary) two.boundary.push_back({f[0] + first, f[1] + first, f[2] + first});
-  two.patch.clear();
+  two.patch.clear(), two.source.clear();
   std::vector<Vec3> displacement(two.points.size());
   for (std::size_t v = first; v < two.points.size(); ++v) displacement[v] = {-1, 0, 0};
   try {
