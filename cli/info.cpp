@@ -103,6 +103,7 @@ std::vector<std::string> parts_in_words(const CadInfo& info) {
                                                              occurrences.size(), listed(occurrences));
     line += fmt::format("{} volume {:.6g}, area {:.6g}", occurrences.size() == 1 ? ":" : "", solid.volume, solid.area);
     if (!solid.material.empty()) line += fmt::format(", of {}", solid.material);
+    if (solid.density > 0) line += fmt::format(", {:.6g} kg/m3", solid.density);
     if (!solid.color.empty()) line += fmt::format(", color {}", solid.color);
     lines.push_back(std::move(line));
   }

@@ -71,6 +71,7 @@ constexpr ReportField kReport[] = {
     {"solids[].color", "string", "of the solid, #ff8000"},
     {"solids[].product", "string", "that the solid is an occurrence of"},
     {"solids[].material", "string", "of the solid"},
+    {"solids[].density", "number", "of the solid, kg/m3"},
     {"faces[]", "string", "what each face is called"},
     {"cad_patches[].name", "string", "of faces that are one patch"},
     {"cad_patches[].faces", "integer", "how many they are"},

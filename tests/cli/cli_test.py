@@ -34,6 +34,38 @@ TETRAHEDRON = """OFF
 """
 
 
+# Of three products, in kg/m3, g/cm3 by a unit of the file's own, and a volume in the place of a density.
+DENSITIES = """#9001=(LENGTH_UNIT()NAMED_UNIT(*)SI_UNIT($,.METRE.));
+#9002=(MASS_UNIT()NAMED_UNIT(*)SI_UNIT(.KILO.,.GRAM.));
+#9003=DERIVED_UNIT((#9004,#9005));
+#9004=DERIVED_UNIT_ELEMENT(#9001,-3.);
+#9005=DERIVED_UNIT_ELEMENT(#9002,1.);
+#9006=MEASURE_REPRESENTATION_ITEM('density measure',POSITIVE_RATIO_MEASURE(2700.),#9003);
+#9007=REPRESENTATION('density',(#9006),#9008);
+#9008=REPRESENTATION_CONTEXT('','');
+#9009=PROPERTY_DEFINITION('material property','density',#{plate});
+#9010=PROPERTY_DEFINITION_REPRESENTATION(#9009,#9007);
+#9011=(CONVERSION_BASED_UNIT('CENTIMETRE',#9012)LENGTH_UNIT()NAMED_UNIT(#9013));
+#9012=LENGTH_MEASURE_WITH_UNIT(LENGTH_MEASURE(10.),#9014);
+#9013=DIMENSIONAL_EXPONENTS(1.,0.,0.,0.,0.,0.,0.);
+#9014=(LENGTH_UNIT()NAMED_UNIT(*)SI_UNIT(.MILLI.,.METRE.));
+#9015=(MASS_UNIT()NAMED_UNIT(*)SI_UNIT($,.GRAM.));
+#9016=DERIVED_UNIT((#9017,#9018));
+#9017=DERIVED_UNIT_ELEMENT(#9011,-3.);
+#9018=DERIVED_UNIT_ELEMENT(#9015,1.);
+#9019=MEASURE_REPRESENTATION_ITEM('density measure',POSITIVE_RATIO_MEASURE(7.85),#9016);
+#9020=REPRESENTATION('density',(#9019),#9008);
+#9021=PROPERTY_DEFINITION('material property','density',#{bolt});
+#9022=PROPERTY_DEFINITION_REPRESENTATION(#9021,#9020);
+#9030=DERIVED_UNIT((#9031));
+#9031=DERIVED_UNIT_ELEMENT(#9014,3.);
+#9032=MEASURE_REPRESENTATION_ITEM('volume measure',VOLUME_MEASURE(22620.5),#9030);
+#9033=REPRESENTATION('volume',(#9032),#9008);
+#9034=PROPERTY_DEFINITION('geometric validation property','volume',#{bracket});
+#9035=PROPERTY_DEFINITION_REPRESENTATION(#9034,#9033);
+"""
+
+
 class CommandLine(unittest.TestCase):
     def setUp(self):
         self.scratch = tempfile.TemporaryDirectory()
@@ -298,6 +330,36 @@ class CommandLine(unittest.TestCase):
                          {"seat", "plate|bolt", "plate|bolt#2", "bracket|bolt", "bracket|bolt#2", "bolt hole 1", "bolt hole 2"})
         self.assertEqual([p["name"] for p in info["cad_patches"]], info["places"]["patches"])
         self.assertEqual([s.get("product") for s in info["solids"]], ["plate", "bracket", "bolt", "bolt"])
+
+    def test_densities_of_a_step_file_are_those_of_a_job(self):
+        self.needs_cad()
+        body, end = (SAMPLES / "assembly.step").read_text().rsplit("ENDSEC;", 1)
+        products = {name: next(re.findall(rf"#(\d+) = PRODUCT_DEFINITION\('design','',#{form}\b", body)[0]
+                               for form in re.findall(rf"#(\d+) = PRODUCT_DEFINITION_FORMATION\('','',#{number}\)", body))
+                    for number, name in re.findall(r"#(\d+) = PRODUCT\('(\w+)'", body)}
+        heavy = self.dir / "heavy.step"
+        heavy.write_text(body + DENSITIES.format(**products) + "ENDSEC;" + end)
+        report, deck = self.dir / "info.json", self.dir / "heavy.inp"
+        self.run_cli("info", heavy, "--json", report)
+        self.assertEqual({s["name"]: "density" in s and round(s["density"], 6) for s in json.loads(report.read_text())["solids"]},
+                         {"plate": 2700, "bracket": False, "bolt": 7850, "bolt#2": 7850})
+        materials = self.dir / "materials.json"
+
+        def densities_with(text):
+            materials.write_text(text)
+            told = self.run_cli("mesh", heavy, "-o", deck, "--size", 12, "--fix", "ground", "--materials", materials).stdout
+            found = re.findall(r"\*MATERIAL, NAME=(\S+)\n\*ELASTIC\n.*\n(?:\*DENSITY\n(\S+))?", deck.read_text())
+            return told, {name: density and round(float(density), 15) for name, density in found}
+
+        told, made = densities_with('{"plate": {"name": "alu", "E": 70000, "density": 3e-9}, "bolt": {"name": "steel", "E": 2e5}}')
+        self.assertIn('densities of the input, as they go with newtons: 7.85e-09 of "bolt", 7.85e-09 of "bolt#2"\n', told)
+        self.assertEqual(made, {"alu": 3e-9, "steel": 7.85e-9, "placeholder": 7.85e-9})
+        told, made = densities_with('{"default": {"name": "metal", "E": 2e5}}')
+        self.assertIn('2.7e-09 of "plate", 7.85e-09 of "bolt", 7.85e-09 of "bolt#2"\n', told)
+        self.assertEqual(made, {"metal": 2.7e-9, "metal_of_bracket": "", "metal_of_bolt": 7.85e-9})
+        told = self.run_cli("mesh", heavy, "-o", deck, "--size", .012, "--unit", "m", "--fix", "ground").stdout
+        self.assertIn("E 2.1e+11, nu 0.3, density 7850 stand there, which is steel in N, m and s", told)
+        self.assertIn('2700 of "plate"', told)
 
     def test_contacts_are_shared_split_or_separate(self):
         self.needs_cad()
