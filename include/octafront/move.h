@@ -42,7 +42,8 @@ std::string to_json(const std::vector<MoveStep>& history);
 ///
 /// Throws InputError for a mesh that is not valid, or has wedges, pyramids, periods or split faces, for displacements
 /// that are not as many as the points or not finite; MeshingError where the body would touch itself (the place, and the
-/// largest part of the motion that is possible, to a thousandth), or where elements cannot follow; Cancelled. The same
+/// largest part of the motion that is possible, to a thousandth; looked for each time that something went by the length
+/// of an edge, 200 times a step at most), or where elements cannot follow; Cancelled. The same
 /// for any number of threads.
 MovedMesh move_mesh(const TetMesh& mesh, std::span<const Vec3> displacement, std::span<const MeshField> fields = {},
                     const Options& options = {}, const RunContext& context = {});

@@ -30,6 +30,8 @@ constexpr double kQualityOfSteps = 0.5;
 constexpr double kShortestStep = 1e-4;
 /// How exactly the part of the motion is found at which the body touches itself.
 constexpr double kContactFound = 1e-3;
+/// How often contact is looked for on the way of one step at most.
+constexpr double kMostLooks = 200;
 
 class Mover {
  public:
@@ -93,9 +95,8 @@ class Mover {
       part /= 2;
       if (part * (1 - done_) < kShortestStep) refuse_to_follow();
     }
-    std::vector<Vec3> points = points_after(part);
-    if (contact(points)) refuse_contact(part);
-    made_.mesh.points = std::move(points);
+    look_for_contact(part);
+    made_.mesh.points = points_after(part);
     for (Vec3& w : left_) w = (1 - part) * w;
     done_ = part == 1 ? 1 : done_ + part * (1 - done_);
   }
@@ -107,9 +108,29 @@ class Mover {
         100 * done_));
   }
 
+  /// On the way, too, each time that something went by the length of an edge against the rest: nothing as thick as an
+  /// element passes through another.
+  void look_for_contact(double part) const {
+    const auto looks =
+        static_cast<int>(std::clamp(std::ceil(part * farthest_way() / shortest_length()), 1.0, kMostLooks));
+    for (int i = 1; i <= looks; ++i) {
+      context_.check();
+      if (contact(points_after(part * i / looks))) refuse_contact(part * (i - 1) / looks, part * i / looks);
+    }
+  }
+
+  /// Of what is left, against the mean.
+  double farthest_way() const {
+    Vec3 mean;
+    for (const Vec3& w : left_) mean += w / static_cast<double>(left_.size());
+    double farthest = 0;
+    for (const Vec3& w : left_) farthest = std::max(farthest, distance(w, mean));
+    return farthest;
+  }
+  double shortest_length() const { return *std::min_element(lengths_.begin(), lengths_.end()); }
+
   /// The motion up to `free` is possible, that to `part` is not.
-  [[noreturn]] void refuse_contact(double part) const {
-    double free = 0;
+  [[noreturn]] void refuse_contact(double free, double part) const {
     Vec3 at = *contact(points_after(part));
     while ((part - free) * (1 - done_) > kContactFound) {
       const double middle = 0.5 * (free + part);

@@ -127,6 +127,10 @@ TEST(MoveMesh, ContactIsRefusedWithItsPlaceAndHowFarItGoes) {
     EXPECT_NE(text.find("touches itself at (1"), std::string::npos) << text;
     EXPECT_NE(text.find("24.9 %"), std::string::npos) << text;
   }
+  // Nor may one end behind the other.
+  std::vector<Vec3> through = displacement;
+  for (Vec3& u : through) u = 5 * u;
+  EXPECT_THROW(move_mesh(two, through), MeshingError);
   for (Vec3& u : displacement) u = 0.24 * u;
   EXPECT_EQ(move_mesh(two, displacement).history.back().fraction, 1);
 }
