@@ -156,7 +156,7 @@ const std::vector<CommandRow>& command_rows() {
       {"carry", "Bring fields of one mesh to another: octafront carry old.vtu new.msh -o new.vtu",
        "  octafront carry old.vtu new.msh -o new.vtu                all fields of old.vtu\n"
        "  octafront carry old.vtu new.vtu -o out.vtk --carry T,rho --json report.json\n"
-       "  octafront carry old.vtu new.vtu -o both.vtu --linear-elements   of second order in elements\n",
+       "  octafront carry old.vtu new.vtu -o both.vtu --linear-elements    of second order in elements\n",
        kTwoMeshes, run_carry},
       {"convert", "Another format, with all names and sets that it holds: in.msh -o out.inp",
        "  octafront convert in.med -o out.inp\n"

@@ -17,6 +17,7 @@ from . import _complexes, _fields, _level_sets, errors, metrics
 from ._images import is_file as _is_file, surface_of_image as _surface_of_image
 from ._intake import opened as _opened
 from ._jobs import Job as _Job
+from ._fields import CarriedFields
 from ._library import bytes_of as _bytes_of, call as _call
 from ._mesh import Checked, Mesh, mesh_of as _mesh_of
 from ._options import Settings as _Settings, takes_options as _takes_options
@@ -26,7 +27,7 @@ from ._surface import OUTSIDE, Surface, surface_of as _surface_of
 from .errors import (Cancelled, Error, InputError, InternalError, MeshingError, OpenCavityError, OptionError, OutputError)
 
 __version__ = _call("version").decode()
-__all__ = ["Cancelled", "Checked", "Error", "InputError", "InternalError", "Mesh", "MeshingError", "OUTSIDE",
+__all__ = ["Cancelled", "CarriedFields", "Checked", "Error", "InputError", "InternalError", "Mesh", "MeshingError", "OUTSIDE",
            "OpenCavityError", "OptionError", "OutputError", "SizeField", "Surface", "adapt", "carry", "check", "complex_of_walls",
            "errors", "formats", "image_surface", "improve", "join_bodies", "mend", "mesh", "mesh_file", "mesh_image", "metrics", "move", "read",
            "repair", "size_field", "surface"]

@@ -878,7 +878,7 @@ class Running(Case):
                 "    octafront.mesh(*shapes.sphere(60, 120), size=0.008)\n"
                 "except KeyboardInterrupt:\n"
                 "    print('interrupted')\n"
-                "    print(len(octafront.mesh(*cube(), size=.5).tets) > 0)\n")
+                "    print(len(octafront.mesh(*shapes.cube(), size=.5).tets) > 0)\n")
         program = subprocess.Popen([sys.executable, "-c", code], stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True)
         self.assertEqual(program.stdout.readline(), "begun\n")
         time.sleep(0.7)
@@ -1304,6 +1304,8 @@ class Package(Case):
             given = {} if row["default"] is None else {row["name"]: row["default"]}
             if row["name"] in keywords_of("mesh"):
                 octafront.mesh(*cube(), size=0.5, **given)
+            elif row["name"] in keywords_of("move"):
+                octafront.move(mesh, 0 * mesh.points, **given)
             else:
                 octafront.adapt(mesh, size=0.5, **given)
 

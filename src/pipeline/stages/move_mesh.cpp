@@ -115,7 +115,10 @@ class Mover {
         static_cast<int>(std::clamp(std::ceil(part * farthest_way() / shortest_length()), 1.0, kMostLooks));
     for (int i = 1; i <= looks; ++i) {
       context_.check();
-      if (contact(points_after(part * i / looks))) refuse_contact(part * (i - 1) / looks, part * i / looks);
+      // Where elements are turned over on the way (points go straight, also around half a turn) their boundary says
+      // nothing; at the end of the step none is.
+      const std::vector<Vec3> points = points_after(part * i / looks);
+      if (poorest(points) >= 0 && contact(points)) refuse_contact(part * (i - 1) / looks, part * i / looks);
     }
   }
 

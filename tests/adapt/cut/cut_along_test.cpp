@@ -151,7 +151,7 @@ TEST(CutAlong, RegionsAreDividedEach) {
 TEST(CutAlong, SmallPiecesGoOnRequest) {
   const TetMesh mesh = perturbed(kuhn_cube(8), 0.1, 5);
   const auto two = [](Vec3 p) {
-    return std::min(distance(p, {0.3, 0.5, 0.5}) - 0.22, distance(p, {0.8, 0.8, 0.8}) - 0.1);
+    return std::min(distance(p, {0.3, 0.5, 0.5}) - 0.22, distance(p, {0.8, 0.8, 0.8}) - 0.15);
   };
   const std::vector sets{level_set_of("ball", mesh, two)};
   const CutMesh both = cut_along(mesh, sets), one = cut_along(mesh, sets, {.least_piece = 0.02});
