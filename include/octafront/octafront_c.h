@@ -299,6 +299,38 @@ octafront_job* octafront_adapt_surface(const octafront_surface* surface, const o
  * mesh has points), or null. The mesh may be null where the task needs none. All must live until the job has ended. */
 octafront_job* octafront_metrics(const octafront_mesh* mesh, const char* json, const double* values,
                                  const double* others, size_t n, double* out, int threads);
+/** LevelSet of octafront/level_set.h: a value at each point of a mesh, and that of the surface. */
+typedef struct {
+  const char* name;
+  const double* values;
+  double level;
+} octafront_level_set;
+/** -> mesh: cut_along() of octafront/level_set.h, by the options' least_piece. The report has "level_sets". Level sets,
+ * names and values must live until the job has ended. */
+octafront_job* octafront_cut(const octafront_mesh* mesh, const octafront_level_set* level_sets, size_t count,
+                             const octafront_options* options, int threads);
+/** Values at the points of a mesh, or of its elements: `components` numbers for each. */
+typedef struct {
+  const char* name; /**< in reports */
+  int of_elements;
+  size_t components;
+  const double* values; /**< on the old mesh */
+  double* out;          /**< has room for those of the new mesh */
+} octafront_field;
+/** carry_fields() of octafront/carry.h, by the options' carry. `adapted` is 1 if octafront_adapt() or
+ * octafront_improve() made the mesh `now` of `before`: then values go on linearly outside. The report has "carry" and
+ * "carried". Fields, names and values must live until the job has ended. */
+octafront_job* octafront_carry(const octafront_mesh* before, const octafront_mesh* now, int adapted,
+                               const octafront_field* fields, size_t count, const octafront_options* options,
+                               int threads);
+/** -> mesh: move_mesh() of octafront/move.h, by three numbers for each point. The report has "history". The fields,
+ * whose `out` is not looked at, are on the new mesh what octafront_mesh_field() gives. All must live until the job has
+ * ended.
+ */
+octafront_job* octafront_move(const octafront_mesh* mesh, const double* displacement, const octafront_field* fields,
+                              size_t count, const octafront_options* options, int threads);
+/** Of what octafront_move() left: the values of the i-th field that it was given, a row for each point or element. */
+int octafront_mesh_field(const octafront_mesh* mesh, size_t i, octafront_array* values);
 /** -> mesh: improve_existing(); `ground`, which may be null: the surface that the boundary slides on. */
 octafront_job* octafront_improve(const octafront_mesh* mesh, const octafront_surface* ground,
                                  const octafront_options* options, int threads);

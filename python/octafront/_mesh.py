@@ -78,7 +78,7 @@ class Mesh:
     def _take(self, handle, report, sizes=None):
         self._handle, self._quality, self._sizes = handle, report.get("quality"), sizes
         self.report = report
-        self.fields = {}  # of adapt()
+        self.fields = {}  # of adapt() and improve()
 
     @classmethod
     def _of(cls, address, report, sizes=None):
@@ -314,6 +314,11 @@ class Mesh:
         """octafront.adapt() of this mesh: a new Mesh that fits other sizes, or a metric."""
         import octafront
         return octafront.adapt(self, sizes=sizes, metric=metric, **keywords)
+
+    def move(self, displacement, *, fields=None, **keywords):
+        """octafront.move() of this mesh: a new Mesh whose points have gone by (n, 3) displacements."""
+        import octafront
+        return octafront.move(self, displacement, fields=fields, **keywords)
 
     def save_page(self, path):
         """Writes a web page that shows the mesh in 3D and its report: one file, which opens without a network. Elements can

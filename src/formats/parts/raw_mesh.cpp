@@ -509,9 +509,11 @@ bool RawMesh::Field::offer(const Input& input, std::string_view name, std::uint6
   return is_wanted;
 }
 
-void RawMesh::Field::take(double value, const RawMesh& raw) {
-  at_tets.resize(raw.tets.size(), value);
-  at_triangles.resize(raw.triangles.size(), value);
+void RawMesh::Field::take(std::span<const double> values, const RawMesh& raw) {
+  const auto take_for = [&](std::size_t elements, std::vector<double>& taken) {
+    while (taken.size() < elements * values.size()) taken.insert(taken.end(), values.begin(), values.end());
+  };
+  take_for(raw.tets.size(), at_tets), take_for(raw.triangles.size(), at_triangles);
 }
 
 void RawMesh::add_tet(std::span<const VertexIndex> nodes, std::int64_t ref, const MidOrder& order) {

@@ -46,13 +46,15 @@ struct RawMesh {
     std::vector<std::string> names;  ///< of all that could be asked for, as the file lists them
     std::vector<double> at_points;   ///< one per point, or empty; of tensors `components` per point
     std::uint64_t components = 1;
-    /// One per element, or empty. Of triangles there may be fewer than there are beside tetrahedra.
+    /// One per element, or as many as Input::wants_element_tensors lets there be, or empty. Of triangles there may be
+    /// fewer than there are beside tetrahedra.
     std::vector<double> at_tets, at_triangles;
 
     /// Enters the name of one that is there; whether its values are asked for.
     bool offer(const Input& input, std::string_view name, std::uint64_t of_components = 1);
-    /// Enters the value of the tetrahedra and triangles that `raw` has more than values.
-    void take(double value, const RawMesh& raw);
+    /// Enters the value, or values, of the tetrahedra and triangles that `raw` has more than values.
+    void take(double value, const RawMesh& raw) { take({&value, 1}, raw); }
+    void take(std::span<const double> values, const RawMesh& raw);
   };
 
   std::string format;  ///< for messages, e.g. "Gmsh MSH 4.1"

@@ -180,7 +180,8 @@ void VtkCellTaker::take(std::uint64_t cell, std::int64_t type, std::span<const s
     ++raw_.other_elements;
     return;
   }
-  if (!data_.field.empty()) raw_.field.take(data_.field[cell], raw_);
+  const std::size_t each = data_.field_components;
+  if (!data_.field.empty()) raw_.field.take(std::span(data_.field).subspan(cell * each, each), raw_);
   for (std::size_t s = 0; s < groups_.size(); ++s)
     if (groups_[s].kind == kind && data_.sets[s].second[cell] != 0)
       for (std::size_t m = member; m < std::max(member + 1, end); ++m)
