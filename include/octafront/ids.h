@@ -18,6 +18,14 @@ constexpr Edge sorted_edge(VertexIndex a, VertexIndex b) {
   return a < b ? Edge{a, b} : Edge{b, a};
 }
 
+/// The corners as a key: the same of a triangle and its back.
+constexpr Triangle sorted_corners(const Triangle& t) {
+  const Edge first = sorted_edge(t[0], t[1]);
+  if (first[1] <= t[2]) return {first[0], first[1], t[2]};
+  const Edge second = sorted_edge(first[0], t[2]);
+  return {second[0], second[1], first[1]};
+}
+
 /// The regions on the two sides of a triangle: in front, where its normal points, and behind; kNone: outside.
 using Sides = std::array<std::uint32_t, 2>;
 

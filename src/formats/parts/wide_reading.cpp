@@ -35,11 +35,6 @@ Edge diagonal_of(const Quad& q) {
   return {std::min(q[k], q[k + 2]), std::max(q[k], q[k + 2])};
 }
 
-Triangle sorted_corners(const Triangle& t) {
-  const VertexIndex low = std::min({t[0], t[1], t[2]}), high = std::max({t[0], t[1], t[2]});
-  return {low, t[0] ^ t[1] ^ t[2] ^ low ^ high, high};
-}
-
 /// The tetrahedra of a pyramid as corners of it.
 std::vector<std::array<std::size_t, 4>> divided_pyramid(std::span<const VertexIndex> nodes, Rank rank) {
   const std::size_t k = is_divided_from_first({nodes[0], nodes[1], nodes[2], nodes[3]}, rank) ? 0 : 1;

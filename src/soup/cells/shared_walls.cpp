@@ -4,14 +4,12 @@
 
 #include "base/core/disjoint_sets.h"
 #include "base/geometry/measures.h"
-#include "base/geometry/predicates.h"
 #include "base/geometry/triangle_tree.h"
 
 #include <algorithm>
 #include <array>
 #include <cmath>
 #include <map>
-#include <optional>
 #include <set>
 #include <utility>
 
@@ -26,11 +24,6 @@ void add(Chain& chain, const Triangle& t, int times) {
     const VertexIndex a = t[i], b = t[(i + 1) % 3];
     chain[sorted_edge(a, b)] += a < b ? times : -times;
   }
-}
-
-Triangle sorted_corners(Triangle t) {
-  std::sort(t.begin(), t.end());
-  return t;
 }
 
 class Sharing {
@@ -77,7 +70,6 @@ class Sharing {
   Vec3 normal_of(const Triangle& t) const { return unit_normal(points_[t[0]], points_[t[1]], points_[t[2]]); }
   double area_of(const Triangle& t) const { return triangle_area(points_, t); }
   Vec3 middle_of(const Triangle& t) const { return (points_[t[0]] + points_[t[1]] + points_[t[2]]) / 3; }
-  static Box3 around(Vec3 p, double by) { return {p - Vec3{by, by, by}, p + Vec3{by, by, by}}; }
   bool is_corner_of_earlier(VertexIndex v) const { return vertices_.contains(v); }
 
   /// Triangles with corners of earlier walls, and in the middle not farther from them than vertices are.
@@ -91,7 +83,7 @@ class Sharing {
   }
   bool lies_on(const TriangleTree& tree, const Triangle& t) const {
     const Vec3 p = middle_of(t), n = normal_of(t);
-    return !tree.for_each_box_near(around(p, most_), [&](std::uint32_t w, const TriangleCorners& c) {
+    return !tree.for_each_box_near(Box3{p, p}.grown(most_), [&](std::uint32_t w, const TriangleCorners& c) {
       const Vec3 q = closest_point_on_triangle(p, c[0], c[1], c[2]);
       return !(distance(p, q) <= reach_[w] && face_each_other(n, normals_[w], n));
     });
