@@ -13,7 +13,6 @@
 #include <algorithm>
 #include <array>
 #include <cstdio>
-#include <cstdlib>
 #include <fstream>
 #include <optional>
 #include <ranges>
@@ -21,7 +20,6 @@
 #include <fmt/core.h>
 #include <unistd.h>
 #ifdef _WIN32
-#include <random>
 #endif
 
 namespace octafront::cli {

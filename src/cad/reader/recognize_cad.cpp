@@ -1,7 +1,6 @@
 #include <octafront/cad.h>
 
 #include <algorithm>
-#include <array>
 #include <cctype>
 #include <filesystem>
 #include <fstream>

@@ -3,6 +3,7 @@
 #include <octafront/error.h>
 
 #include <algorithm>
+#include <array>
 #include <cstdlib>
 #include <limits>
 #include <system_error>

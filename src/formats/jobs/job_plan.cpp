@@ -2,7 +2,6 @@
 
 #include <octafront/error.h>
 
-#include "base/core/wording.h"
 #include "base/places/places.h"
 
 #include <algorithm>

@@ -5,7 +5,6 @@
 #include "formats/containers/text_writer.h"
 #include "formats/write/writers.h"
 
-#include <algorithm>
 #include <array>
 
 namespace octafront::io {

@@ -10,7 +10,6 @@
 
 #include <algorithm>
 #include <bit>
-#include <span>
 
 #ifdef _WIN32
 #include "base/core/files_of_windows.h"
