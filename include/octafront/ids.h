@@ -18,12 +18,11 @@ constexpr Edge sorted_edge(VertexIndex a, VertexIndex b) {
   return a < b ? Edge{a, b} : Edge{b, a};
 }
 
-/// The corners as a key: the same of a triangle and its back.
-constexpr Triangle sorted_corners(const Triangle& t) {
-  const Edge first = sorted_edge(t[0], t[1]);
-  if (first[1] <= t[2]) return {first[0], first[1], t[2]};
-  const Edge second = sorted_edge(first[0], t[2]);
-  return {second[0], second[1], first[1]};
+/// The corners in ascending order: the same for all triangles on these vertices. A key.
+constexpr Triangle face_key(const Triangle& t) {
+  const VertexIndex low = t[0] < t[1] ? t[0] : t[1], high = t[0] < t[1] ? t[1] : t[0];
+  const VertexIndex lower = high < t[2] ? high : t[2];
+  return {low < t[2] ? low : t[2], low < lower ? lower : low, high < t[2] ? t[2] : high};
 }
 
 /// The regions on the two sides of a triangle: in front, where its normal points, and behind; kNone: outside.

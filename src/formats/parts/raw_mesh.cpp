@@ -291,10 +291,10 @@ class Ordering {
     const auto patch_of = [&](std::size_t i) { return patches.numbers[i] == kNone ? free : patches.numbers[i]; };
     for (std::uint32_t i = 0; i < raw_.triangles.size(); ++i) {
       if (has_none(raw_.triangles[i])) continue;
-      const Triangle key = sorted_corners(raw_.triangles[i]);
+      const Triangle key = face_key(raw_.triangles[i]);
       const auto at = std::lower_bound(faces.begin(), faces.end(), key,
-                                       [](const Triangle& f, const Triangle& k) { return sorted_corners(f) < k; });
-      if (at == faces.end() || sorted_corners(*at) != key) {
+                                       [](const Triangle& f, const Triangle& k) { return face_key(f) < k; });
+      if (at == faces.end() || face_key(*at) != key) {
         inside.push_back(i);
         continue;
       }

@@ -142,7 +142,7 @@ class Dissolving {
 
   bool exists(const Triangle& t, VertexIndex at) const {
     return std::any_of(around_[at].begin(), around_[at].end(),
-                       [&](std::uint32_t s) { return sorted_corners(mesh_.triangles[s]) == sorted_corners(t); });
+                       [&](std::uint32_t s) { return face_key(mesh_.triangles[s]) == face_key(t); });
   }
 
   void collapse(VertexIndex v, VertexIndex w) {

@@ -33,7 +33,7 @@ class Sharing {
       : points_(points), later_(later), context_(context), floor_(misfits.floor()) {
     const std::uint32_t body = later.front().body;
     for (const BodyFace& f : earlier) {
-      if (!known_.insert(sorted_corners(f.corners)).second) continue;
+      if (!known_.insert(face_key(f.corners)).second) continue;
       walls_.push_back(f.corners);
       reach_.push_back(misfits.reach(f.body, body));
       most_ = std::max(most_, reach_.back());
@@ -78,7 +78,7 @@ class Sharing {
     for (const BodyFace& f : later_) {
       const Triangle& t = f.corners;
       const bool has_corners = std::all_of(t.begin(), t.end(), [&](VertexIndex v) { return is_corner_of_earlier(v); });
-      contact_.push_back(has_corners && (known_.contains(sorted_corners(t)) || lies_on(tree, t)));
+      contact_.push_back(has_corners && (known_.contains(face_key(t)) || lies_on(tree, t)));
     }
   }
   bool lies_on(const TriangleTree& tree, const Triangle& t) const {
@@ -90,7 +90,7 @@ class Sharing {
   }
   bool is_shared() const {
     for (std::size_t t = 0; t < later_.size(); ++t)
-      if (contact_[t] && !known_.contains(sorted_corners(later_[t].corners))) return false;
+      if (contact_[t] && !known_.contains(face_key(later_[t].corners))) return false;
     return true;
   }
 

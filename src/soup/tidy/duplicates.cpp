@@ -23,7 +23,7 @@ VertexIndex apex(const Triangle& t, const Edge& edge) {
 }
 
 bool is_first_edge(const Triangle& t, const Edge& edge) {
-  const Triangle sorted = sorted_corners(t);
+  const Triangle sorted = face_key(t);
   return edge == Edge{sorted[0], sorted[1]};
 }
 
