@@ -79,6 +79,7 @@ void declare_options(CLI::App& command, std::string_view name, Arguments& argume
 
 /// The commands of the program.
 std::vector<const CLI::App*> commands_of(const CLI::App& app);
+std::vector<std::string> names_of_commands(const CLI::App& app);
 
 /// Every option of a command, those of its groups too.
 std::vector<const CLI::Option*> options_of(const CLI::App& command);

@@ -5,7 +5,6 @@
 #include "inputs.h"
 #include "mesh_in_words.h"
 #include "text.h"
-#include "units.h"
 
 #include <algorithm>
 #include <cmath>

@@ -4,8 +4,6 @@
 
 #include "text.h"
 
-#include <utility>
-
 #include <fmt/core.h>
 
 namespace octafront::cli {

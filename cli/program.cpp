@@ -12,7 +12,6 @@
 #include "text.h"
 #include "units.h"
 
-#include <cstdio>
 #include <map>
 
 #include <fmt/core.h>
@@ -28,12 +27,6 @@ std::vector<std::string> names_of_options(const CLI::App& command) {
   std::vector<std::string> names;
   for (const CLI::Option* option : options_of(command))
     for (const std::string& name : option->get_lnames()) names.push_back("--" + name);
-  return names;
-}
-
-std::vector<std::string> names_of_commands(const CLI::App& app) {
-  std::vector<std::string> names;
-  for (const CLI::App* command : commands_of(app)) names.push_back(command->get_name());
   return names;
 }
 

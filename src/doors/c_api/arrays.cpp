@@ -9,7 +9,6 @@
 #include "doors/c_api/c_api.h"
 
 #include <algorithm>
-#include <cmath>
 #include <nlohmann/json.hpp>
 
 #include <fmt/core.h>

@@ -4,10 +4,8 @@
 
 #include "base/core/parallel.h"
 #include "base/mesh/face_table.h"
-#include "formats/parts/boundary.h"
 
 #include <algorithm>
-#include <cstdlib>
 #include <functional>
 #include <limits>
 #include <map>

@@ -4,7 +4,6 @@
 #include "base/mesh/renumber.h"
 
 #include <algorithm>
-#include <numeric>
 
 namespace octafront::io {
 namespace {

@@ -100,11 +100,6 @@ void forget_zeros(std::vector<std::uint32_t>& numbers) {
   if (std::all_of(numbers.begin(), numbers.end(), [](std::uint32_t n) { return n == 0; })) numbers.clear();
 }
 
-Triangle sorted(Triangle t) {
-  std::sort(t.begin(), t.end());
-  return t;
-}
-
 bool has_none(std::span<const std::uint32_t> row) {
   return std::find(row.begin(), row.end(), kNone) != row.end();
 }
@@ -296,10 +291,10 @@ class Ordering {
     const auto patch_of = [&](std::size_t i) { return patches.numbers[i] == kNone ? free : patches.numbers[i]; };
     for (std::uint32_t i = 0; i < raw_.triangles.size(); ++i) {
       if (has_none(raw_.triangles[i])) continue;
-      const Triangle key = sorted(raw_.triangles[i]);
+      const Triangle key = face_key(raw_.triangles[i]);
       const auto at = std::lower_bound(faces.begin(), faces.end(), key,
-                                       [](const Triangle& f, const Triangle& k) { return sorted(f) < k; });
-      if (at == faces.end() || sorted(*at) != key) {
+                                       [](const Triangle& f, const Triangle& k) { return face_key(f) < k; });
+      if (at == faces.end() || face_key(*at) != key) {
         inside.push_back(i);
         continue;
       }

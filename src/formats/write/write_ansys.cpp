@@ -8,7 +8,6 @@
 #include "formats/write/writers.h"
 
 #include <array>
-#include <span>
 #include <string>
 
 namespace octafront::io {

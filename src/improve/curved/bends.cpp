@@ -5,7 +5,6 @@
 #include "base/mesh/edge_table.h"
 
 #include <algorithm>
-#include <cmath>
 #include <cstdint>
 #include <optional>
 

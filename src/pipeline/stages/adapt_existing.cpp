@@ -18,8 +18,6 @@
 #include "pipeline/stages/wall_sizes.h"
 #include "pipeline/stages/walls_apart.h"
 
-#include <cmath>
-#include <memory>
 #include <optional>
 
 #include <fmt/core.h>
