@@ -47,7 +47,7 @@ MeshFile read_mesh_file_input(Session& session) {
   MeshFile file = read_mesh_file(a.input.string(), session.context());
   require_elements(static_cast<double>(file.mesh.tets.size()), a.input.string());
   session.say(fmt::format("{}: {}, {} tetrahedra{}\n", a.input.string(), file.format, file.mesh.tets.size(),
-                          file.mesh.is_second_order() ? " of second order" : ""));
+                          file.mesh.order() > 1 ? fmt::format(" of order {}", file.mesh.order()) : ""));
   tell_reading(session, file.notes);
   return file;
 }

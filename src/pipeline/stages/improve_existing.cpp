@@ -141,8 +141,8 @@ void raise_order(TetMesh& mesh, const Ground* ground, Run& run) {
   run.stage("second order", [&](const Stage& stage) {
     run.report.second_order =
         ground ? curve_to_surface(mesh, ground->of_mesh.edges, ground->surface, run.options.surface.angle_of_features(),
-                                  {}, paired_vertices(mesh), stage.context())
-               : add_straight_edges(mesh, stage.context());
+                                  {}, paired_vertices(mesh), run.options.order, stage.context())
+               : add_straight_edges(mesh, run.options.order, stage.context());
     count_edges(run.report.second_order, stage);
   });
 }
