@@ -110,12 +110,12 @@ struct TetMesh {
   /// points like others, behind all corners. Empty: the mesh is linear.
   std::vector<std::array<VertexIndex, 6>> mid_nodes;
   /// Order 3 or 4: the nodes of each tet behind its corners, one tet after the other; they lie where the barycentric
-  /// coordinates are multiples of 1/order: of each edge of kTetEdges those from its first end to its second, of each face
-  /// of kTetFaces those inside (of order 4 the one nearest to its first corner first), at order 4 one in the middle.
-  /// Shared by the tets at an edge or face; points like others, behind all corners. Then `mid_nodes` is empty.
+  /// coordinates are multiples of 1/order: of each edge of kTetEdges those from its first end to its second, of each
+  /// face of kTetFaces those inside (of order 4 the one nearest to its first corner first), at order 4 one in the
+  /// middle. Shared by the tets at an edge or face; points like others, behind all corners. Then `mid_nodes` is empty.
   std::vector<VertexIndex> high_nodes;
   std::uint32_t high_order = 0;  ///< 3 or 4; 0: there are none
-  std::vector<NamedSet> sets;  ///< further named parts: what a user asked for, or a file had
+  std::vector<NamedSet> sets;    ///< further named parts: what a user asked for, or a file had
   /// Ascending. Files whose formats have wedges and pyramids get these in the place of their tetrahedra; each
   /// quadrilateral between two of them or at the boundary is whole on both sides. Empty: tetrahedra only.
   std::vector<WideCell> wide_cells;

@@ -85,8 +85,7 @@ std::vector<std::vector<std::int64_t>> control_of_nodes(int p) {
     for (std::size_t i = 0; i < 4; ++i)
       for (int m = 0; m < lattice.weights(n)[i]; ++m) one = one.times(i, p, m);
     const std::int64_t scale = factorial(p) / factorials(lattice.weights(n));
-    for (std::size_t c = 0; c < lattice.size(); ++c)
-      all[c][n] = one.of[c] * factorials(lattice.weights(c)) * scale;
+    for (std::size_t c = 0; c < lattice.size(); ++c) all[c][n] = one.of[c] * factorials(lattice.weights(c)) * scale;
   }
   return all;
 }
@@ -158,8 +157,8 @@ std::vector<double> coefficients_of(const Tables& t, const Columns& g) {
 }
 
 /// How much a coefficient may be off. Each is a mean of determinants, none of which is more than the product of the
-/// longest columns (Hadamard); with eps = 2^-53 an entry errs by 37 eps of its magnitudes at most, a product of three by
-/// three times that and 8, 42 additions follow, and nine for each time that the element is halved.
+/// longest columns (Hadamard); with eps = 2^-53 an entry errs by 37 eps of its magnitudes at most, a product of three
+/// by three times that and 8, 42 additions follow, and nine for each time that the element is halved.
 double rounding_of(const Tables& tables, std::span<const Vec3> x) {
   constexpr double kRounding = 1000 * 0x1p-53;
   double most = 1;
@@ -196,7 +195,7 @@ std::array<std::vector<ExactVec>, 3> exact_columns(const Tables& tables, std::sp
 }
 
 /// The sign of one coefficient.
-int exact_sign(const Tables& t, const std::array<std::vector<ExactVec>, 3>& g, std::size_t coefficient) {
+int exact_sign_of_coefficient(const Tables& t, const std::array<std::vector<ExactVec>, 3>& g, std::size_t coefficient) {
   Exact all;
   for (std::size_t i = 0; i < t.entries.size(); ++i)
     for (std::size_t j = 0; j < t.entries.size(); ++j)
@@ -214,8 +213,16 @@ struct PartOfTet {
   std::array<std::array<double, 4>, 4> corners;
 };
 
+double least_coefficient(const PartOfTet& part) {
+  return *std::ranges::min_element(part.coefficients);
+}
+
+PartOfTet whole_tet(std::vector<double> coefficients) {
+  return {std::move(coefficients), {{{1, 0, 0, 0}, {0, 1, 0, 0}, {0, 0, 1, 0}, {0, 0, 0, 1}}}};
+}
+
 /// The two corners of a part that are farthest from each other.
-std::pair<std::size_t, std::size_t> longest_edge(const PartOfTet& part) {
+std::pair<std::size_t, std::size_t> longest_edge_of_part(const PartOfTet& part) {
   std::pair<std::size_t, std::size_t> longest{0, 1};
   double most = -1;
   for (std::size_t i = 0; i < 4; ++i)
@@ -231,8 +238,7 @@ std::pair<std::size_t, std::size_t> longest_edge(const PartOfTet& part) {
 /// The part with corner `moved` in the middle of its edge to `kept` (de Casteljau's algorithm along it).
 PartOfTet half_of(const TetLattice& lattice, const PartOfTet& part, std::size_t kept, std::size_t moved) {
   PartOfTet half = part;
-  for (std::size_t k = 0; k < 4; ++k)
-    half.corners[moved][k] = 0.5 * (part.corners[kept][k] + part.corners[moved][k]);
+  for (std::size_t k = 0; k < 4; ++k) half.corners[moved][k] = 0.5 * (part.corners[kept][k] + part.corners[moved][k]);
   // Coefficients along each line of the lattice from `kept` to `moved`, by themselves.
   for (std::size_t n = 0; n < lattice.size(); ++n) {
     Weights w = lattice.weights(n);
@@ -256,15 +262,15 @@ PartOfTet half_of(const TetLattice& lattice, const PartOfTet& part, std::size_t 
 Validity validity_by_halves(const TetLattice& lattice, std::vector<double> coefficients, double off) {
   constexpr std::size_t kMostParts = 4096;
   std::vector<PartOfTet> left;
-  left.push_back({std::move(coefficients), {{{1, 0, 0, 0}, {0, 1, 0, 0}, {0, 0, 1, 0}, {0, 0, 0, 1}}}});
+  left.push_back(whole_tet(std::move(coefficients)));
   for (std::size_t looked = 0; !left.empty(); ++looked) {
     if (looked == kMostParts) return Validity::kUndecided;
     const PartOfTet part = std::move(left.back());
     left.pop_back();
-    if (*std::ranges::min_element(part.coefficients) > off) continue;
+    if (least_coefficient(part) > off) continue;
     // The coefficients of corners are values.
     if (*std::min_element(part.coefficients.begin(), part.coefficients.begin() + 4) < -off) return Validity::kInvalid;
-    const auto [a, b] = longest_edge(part);
+    const auto [a, b] = longest_edge_of_part(part);
     left.push_back(half_of(lattice, part, a, b));
     left.push_back(half_of(lattice, part, b, a));
   }
@@ -272,6 +278,28 @@ Validity validity_by_halves(const TetLattice& lattice, std::vector<double> coeff
 }
 
 }  // namespace
+
+double least_jacobian(int order, std::span<const Vec3> nodes, std::size_t parts) {
+  const TetLattice& lattice = tables_of(order).coefficients;
+  const auto is_better = [](const PartOfTet& a, const PartOfTet& b) {
+    return least_coefficient(a) > least_coefficient(b);
+  };
+  std::vector<PartOfTet> all{whole_tet(jacobian_coefficients(order, nodes))};
+  while (all.size() < parts) {
+    std::ranges::pop_heap(all, is_better);
+    const PartOfTet worst = std::move(all.back());
+    all.pop_back();
+    // The coefficients of corners are values: no half is worse than these.
+    if (*std::min_element(worst.coefficients.begin(), worst.coefficients.begin() + 4) <= least_coefficient(worst))
+      return least_coefficient(worst);
+    const auto [a, b] = longest_edge_of_part(worst);
+    for (const auto& [kept, moved] : {std::pair{a, b}, std::pair{b, a}}) {
+      all.push_back(half_of(lattice, worst, kept, moved));
+      std::ranges::push_heap(all, is_better);
+    }
+  }
+  return least_coefficient(all.front());
+}
 
 std::vector<double> jacobian_coefficients(int order, std::span<const Vec3> nodes) {
   const Tables& tables = tables_of(order);
@@ -314,7 +342,7 @@ Validity validity_of(int order, std::span<const Vec3> nodes) {
   if (least < -off) return validity_by_halves(tables.coefficients, std::move(all), off);
   const auto columns = exact_columns(tables, nodes);
   for (std::size_t k = 0; k < all.size(); ++k)
-    if (all[k] <= off && exact_sign(tables, columns, k) <= 0)
+    if (all[k] <= off && exact_sign_of_coefficient(tables, columns, k) <= 0)
       return k < 4 ? Validity::kInvalid : validity_by_halves(tables.coefficients, std::move(all), off);
   return Validity::kValid;
 }

@@ -28,6 +28,10 @@ enum class Validity {
 /// `nodes`: those of tet_lattice(order). About 2 microseconds at order 3, 9 at order 4.
 JacobianRange jacobian_range(int order, std::span<const Vec3> nodes);
 
+/// A bound from below for the Jacobian, sharper than its least coefficient: that of the parts that the element is
+/// halved into, where it is worst, up to so many; rounded. About 2 microseconds a part.
+double least_jacobian(int order, std::span<const Vec3> nodes, std::size_t parts);
+
 /// All coefficients, rounded, by the nodes of tet_lattice(3 (order - 1)).
 std::vector<double> jacobian_coefficients(int order, std::span<const Vec3> nodes);
 

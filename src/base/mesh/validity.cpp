@@ -63,7 +63,8 @@ std::optional<std::string> point_defect(const TetMesh& mesh) {
   if (auto d = range_defect(mesh.mid_nodes, n, "tetrahedron")) return d;
   for (std::size_t i = 0; i < mesh.high_nodes.size(); ++i)
     if (mesh.high_nodes[i] >= n)
-      return fmt::format("tetrahedron {} refers to vertex {} of {}", i / mesh.high_nodes_per_tet(), mesh.high_nodes[i], n);
+      return fmt::format("tetrahedron {} refers to vertex {} of {}", i / mesh.high_nodes_per_tet(), mesh.high_nodes[i],
+                         n);
   if (auto d = range_defect(mesh.boundary, n, "boundary face")) return d;
   if (auto d = range_defect(mesh.interfaces, n, "interface")) return d;
   if (auto d = range_defect(mesh.curve_edges, n, "curve edge")) return d;
@@ -89,7 +90,8 @@ std::optional<std::string> array_defect(const TetMesh& mesh) {
   if (auto d = misfit("face_layers", mesh.face_layers.size(), mesh.boundary.size() + mesh.interfaces.size(), "faces"))
     return d;
   if (mesh.high_order > 0 && (mesh.high_order < 3 || mesh.high_order > 4 || mesh.is_second_order()))
-    return fmt::format("high_order is {}{}", mesh.high_order, mesh.is_second_order() ? ", and there are mid_nodes" : "");
+    return fmt::format("high_order is {}{}", mesh.high_order,
+                       mesh.is_second_order() ? ", and there are mid_nodes" : "");
   if (auto d = misfit("high_nodes", mesh.high_nodes.size(), mesh.tets.size() * mesh.high_nodes_per_tet(),
                       "nodes of tetrahedra"))
     return d;

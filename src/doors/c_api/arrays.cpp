@@ -115,9 +115,10 @@ std::uint32_t high_order_of(const TetMesh& m) {
   const std::size_t each = m.tets.empty() ? 0 : m.high_nodes.size() / m.tets.size();
   if (m.high_nodes.empty()) return 0;
   if ((each != 16 && each != 31) || each * m.tets.size() != m.high_nodes.size())
-    throw InputError(fmt::format("high_nodes has {} values for {} tets, which come first: give 16 each (order 3), or 31 "
-                                 "(order 4)",
-                                 m.high_nodes.size(), m.tets.size()));
+    throw InputError(
+        fmt::format("high_nodes has {} values for {} tets, which come first: give 16 each (order 3), or 31 "
+                    "(order 4)",
+                    m.high_nodes.size(), m.tets.size()));
   return each == 16 ? 3 : 4;
 }
 

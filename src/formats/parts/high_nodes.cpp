@@ -54,7 +54,9 @@ std::size_t lattice_node_of_gmsh(int order, std::size_t k) {
 
 std::size_t vtk_node_of_gmsh(int order, std::size_t k) {
   const std::size_t node = lattice_node_of_gmsh(order, k);
-  const auto find = [&](const auto& all) { return static_cast<std::size_t>(std::ranges::find(all, node) - all.begin()); };
+  const auto find = [&](const auto& all) {
+    return static_cast<std::size_t>(std::ranges::find(all, node) - all.begin());
+  };
   return order == 3 ? find(kVtk3) : find(kVtk4);
 }
 
@@ -84,7 +86,8 @@ VertexIndex HighNodes::node(TetIndex t, const std::array<VertexIndex, kCorners>&
   const Tet& tet = mesh_.tets[t];
   TetLattice::Weights w{};
   for (std::size_t i = 0; i < kCorners; ++i)
-    w[static_cast<std::size_t>(std::ranges::find(tet, corners[i]) - tet.begin())] = static_cast<std::int8_t>(weights[i]);
+    w[static_cast<std::size_t>(std::ranges::find(tet, corners[i]) - tet.begin())] =
+        static_cast<std::int8_t>(weights[i]);
   const std::size_t node = tet_lattice(mesh_.order()).at(w);
   return node < 4 ? tet[node] : mesh_.high_nodes[t * mesh_.high_nodes_per_tet() + node - 4];
 }

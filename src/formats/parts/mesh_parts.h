@@ -103,8 +103,8 @@ class MeshParts {
   }
   std::uint32_t curve_of(std::size_t e) const { return mesh_.curve.empty() ? 0 : mesh_.curve[e]; }
 
-  /// Corners and, at second order, mid-side nodes, in the order of VTK (edges 12 23 13 14 24 34; 12 23 31; 12). At order
-  /// 3 and 4 that of VTK's Lagrange cells: of edges 12 23 31 14 24 34, of faces, inside.
+  /// Corners and, at second order, mid-side nodes, in the order of VTK (edges 12 23 13 14 24 34; 12 23 31; 12). At
+  /// order 3 and 4 that of VTK's Lagrange cells: of edges 12 23 31 14 24 34, of faces, inside.
   std::span<const VertexIndex> tet_nodes(std::size_t t, CellRoom& room) const;
   std::span<const VertexIndex> face_nodes(std::size_t f, FaceRoom& room) const;
   std::span<const VertexIndex> edge_nodes(std::size_t e, EdgeRoom& room) const;

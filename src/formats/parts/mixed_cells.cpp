@@ -77,8 +77,7 @@ VertexIndex MixedCells::node(std::size_t cell, std::size_t k, const WideOrder& o
   return node_of(mesh_.mesh(), wide(cell), order.of(cell >= end_[kPyramid])[k]);
 }
 
-std::span<const VertexIndex> MixedCells::nodes(std::size_t cell, CellRoom& room,
-                                               const WideOrder& order) const {
+std::span<const VertexIndex> MixedCells::nodes(std::size_t cell, CellRoom& room, const WideOrder& order) const {
   const std::size_t count = nodes_per(kind(cell));
   for (std::size_t k = 0; k < count; ++k) room[k] = node(cell, k, order);
   return std::span(room).first(count);

@@ -33,8 +33,7 @@ class MixedCells {
   TetIndex first_tet(std::size_t cell) const;
   std::size_t cell_of(TetIndex tet) const { return cell_of_.empty() ? tet : cell_of_[tet]; }
   /// Of a tetrahedron as MeshParts has them; of a pyramid or wedge in the order of kPlainWide, or the one given.
-  std::span<const VertexIndex> nodes(std::size_t cell, CellRoom& room,
-                                     const WideOrder& order = kPlainWide) const;
+  std::span<const VertexIndex> nodes(std::size_t cell, CellRoom& room, const WideOrder& order = kPlainWide) const;
   /// One of them.
   VertexIndex node(std::size_t cell, std::size_t k, const WideOrder& order = kPlainWide) const;
   const WideCell& wide(std::size_t cell) const { return mesh_.mesh().wide_cells[wide_[cell - end_[kTet]]]; }

@@ -167,15 +167,16 @@ std::vector<std::array<VertexIndex, kCorners + 3>> rows_of_parts(const RawMesh& 
 }
 
 template <std::size_t kCorners, class Parts>
-void check_parts(const RawMesh& raw, const Parts& parts, const Input& input) {
+void check_nodes_of_parts(const RawMesh& raw, const Parts& parts, const Input& input) {
   const auto rows = rows_of_parts<kCorners>(raw, parts);
   const auto differ = std::ranges::adjacent_find(rows, [](const auto& a, const auto& b) {
     return std::equal(a.begin(), a.begin() + kCorners, b.begin()) && a != b;
   });
   if (differ != rows.end())
-    input.fail(fmt::format("two tetrahedra have other nodes on the {} between {} and {} (counted from 0), which they "
-                           "share; the file is damaged: export it again",
-                           kCorners == 2 ? "edge" : "face", (*differ)[0], (*differ)[1]));
+    input.fail(
+        fmt::format("two tetrahedra have other nodes on the {} between {} and {} (counted from 0), which they "
+                    "share; the file is damaged: export it again",
+                    kCorners == 2 ? "edge" : "face", (*differ)[0], (*differ)[1]));
 }
 
 /// Of one order all or none, and the same nodes where they meet.
@@ -193,11 +194,12 @@ void check_high_nodes(RawMesh& raw, const Input& input) {
     for (const VertexIndex v : t) is_corner[v] = true;
   for (std::size_t i = 0; i < raw.high_nodes.size(); ++i)
     if (is_corner[raw.high_nodes[i]])
-      input.fail(fmt::format("the node {} (counted from 0) is a corner of one tetrahedron and a further node of "
-                             "tetrahedron {}; the file is damaged: export it again",
-                             raw.high_nodes[i], i / each));
-  check_parts<2>(raw, kTetEdges, input);
-  check_parts<3>(raw, kTetFaces, input);
+      input.fail(
+          fmt::format("the node {} (counted from 0) is a corner of one tetrahedron and a further node of "
+                      "tetrahedron {}; the file is damaged: export it again",
+                      raw.high_nodes[i], i / each));
+  check_nodes_of_parts<2>(raw, kTetEdges, input);
+  check_nodes_of_parts<3>(raw, kTetFaces, input);
 }
 
 /// Corners 2 and 3 change places.

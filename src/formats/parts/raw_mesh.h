@@ -62,7 +62,7 @@ struct RawMesh {
   /// Of order 3 or 4: as TetMesh::high_nodes. Fewer than all tets need: some have none.
   std::vector<VertexIndex> high_nodes;
   std::uint32_t high_order = 0;
-  std::vector<std::int64_t> tet_ref;                  ///< one per tet; empty: regions come from groups
+  std::vector<std::int64_t> tet_ref;  ///< one per tet; empty: regions come from groups
   std::vector<Triangle> triangles;
   std::vector<std::int64_t> triangle_ref;      ///< one per triangle; empty: patches come from groups
   std::vector<std::uint32_t> triangle_source;  ///< one per triangle, or empty

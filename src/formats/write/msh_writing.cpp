@@ -15,9 +15,10 @@ using Kind = NamedSet::Kind;
 
 std::int32_t gmsh_type_of(std::size_t dimension, std::size_t nodes) {
   using Types = std::map<std::size_t, std::int32_t>;
-  static const std::array<Types, 4> kTypes{Types{{1, 15}}, Types{{2, 1}, {3, 8}, {4, 26}, {5, 27}},
-                                           Types{{3, 2}, {4, 3}, {6, 9}, {8, 16}, {10, 21}, {15, 23}},
-                                           Types{{4, 4}, {5, 7}, {6, 6}, {10, 11}, {13, 19}, {15, 18}, {20, 29}, {35, 30}}};
+  static const std::array<Types, 4> kTypes{
+      Types{{1, 15}}, Types{{2, 1}, {3, 8}, {4, 26}, {5, 27}},
+      Types{{3, 2}, {4, 3}, {6, 9}, {8, 16}, {10, 21}, {15, 23}},
+      Types{{4, 4}, {5, 7}, {6, 6}, {10, 11}, {13, 19}, {15, 18}, {20, 29}, {35, 30}}};
   return kTypes[dimension].at(nodes);
 }
 

@@ -76,8 +76,7 @@ class WholeFaces {
   }
 
   /// A face of the boundary of some mesh.
-  static FoamFace face_of_boundary(const MixedCells& cells, std::uint32_t f, std::uint32_t owner,
-                                   FaceRoom& room) {
+  static FoamFace face_of_boundary(const MixedCells& cells, std::uint32_t f, std::uint32_t owner, FaceRoom& room) {
     const auto nodes = cells.face_nodes(f, room);
     return {{nodes[0], nodes[1], nodes[2], nodes[f < cells.triangles() ? 2 : 3]}, owner, kNone};
   }

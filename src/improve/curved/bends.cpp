@@ -55,8 +55,8 @@ class Search {
   double edge_length(std::size_t e) const { return distance(point(table_.edges[e][0]), point(table_.edges[e][1])); }
   Vec3 middle(std::size_t e) const { return 0.5 * (point(table_.edges[e][0]) + point(table_.edges[e][1])); }
   double longest_edge(const Triangle& t) const {
-    return std::max({distance(point(t[0]), point(t[1])), distance(point(t[1]), point(t[2])),
-                     distance(point(t[2]), point(t[0]))});
+    return std::max(
+        {distance(point(t[0]), point(t[1])), distance(point(t[1]), point(t[2])), distance(point(t[2]), point(t[0]))});
   }
   Vec3 face_normal(std::size_t f) const {
     const auto& [a, b, c] = faces_[f];
@@ -153,15 +153,17 @@ class Search {
     }
     for (std::size_t e = 0; e < table_.size(); ++e) {
       NodeMoves by{};
-      const double most = most_bend(table_.edges[e], edge_length(e), first_of_edge(e), nodes_in_edge(order_),
-                                    [&](std::size_t k) { return in_edge(order_, k); }, moved, by);
+      const double most = most_bend(
+          table_.edges[e], edge_length(e), first_of_edge(e), nodes_in_edge(order_),
+          [&](std::size_t k) { return in_edge(order_, k); }, moved, by);
       if (most > kStraightBend && most <= kMostBend) bends.edges.push_back({table_.edges[e], by});
     }
     for (std::size_t f = 0; f < faces_.size() && nodes_in_face(order_) > 0; ++f) {
       const Triangle corners = face_key(faces_[f]);
       NodeMoves by{};
-      const double most = most_bend(corners, longest_edge(corners), first_of_face(f), nodes_in_face(order_),
-                                    [&](std::size_t k) { return in_face(order_, k); }, moved, by);
+      const double most = most_bend(
+          corners, longest_edge(corners), first_of_face(f), nodes_in_face(order_),
+          [&](std::size_t k) { return in_face(order_, k); }, moved, by);
       if (most >= 0 && most <= kMostBend) bends.faces.push_back({corners, by});
     }
     std::ranges::sort(bends.faces, {}, &FaceBend::face);

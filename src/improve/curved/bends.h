@@ -19,8 +19,9 @@ struct CornerMove {
   Vec3 by;
 };
 
-/// How far the nodes inside an edge (from its lower end on) or face (the one nearest to its lowest corner first) lie off
-/// the straight one between its corners, when those are where they want to be. It keeps this shape where they are not.
+/// How far the nodes inside an edge (from its lower end on) or face (the one nearest to its lowest corner first) lie
+/// off the straight one between its corners, when those are where they want to be. It keeps this shape where they are
+/// not.
 using NodeMoves = std::array<Vec3, 3>;
 
 /// An edge of the boundary that would be curved.

@@ -24,6 +24,8 @@ namespace {
 // As those of second order (easing.cpp).
 constexpr double kLeastScaledOfHigh = 0.1;
 constexpr int kMostHalvingsOfHigh = 8;
+/// An element that seems bad by its coefficients is halved into so many parts.
+constexpr std::size_t kPartsOfBent = 64;
 
 /// How much each node inside an edge counts at a place where the barycentric coordinates of its ends are `low` and
 /// `high`: low * high times the polynomial of high - low that is 1 / (low * high) at this node and 0 at the others.
@@ -96,11 +98,7 @@ struct TetFaces {
 class HighOrder {
  public:
   HighOrder(TetMesh& mesh, int order, const Bends& bends)
-      : mesh_(mesh),
-        order_(order),
-        corners_(mesh.points.size()),
-        faces_(mesh),
-        edges_(edges_of(mesh, edge_of_)) {
+      : mesh_(mesh), order_(order), corners_(mesh.points.size()), faces_(mesh), edges_(edges_of(mesh, edge_of_)) {
     first_in_face_ = corners_ + edges_.size() * nodes_in_edge(order);
     first_in_tet_ = first_in_face_ + faces_.corners.size() * nodes_in_face(order);
     mesh.points.resize(first_in_tet_ + mesh.tets.size() * nodes_in_tet(order));
@@ -165,7 +163,8 @@ class HighOrder {
       const Tet& tet = mesh_.tets[t];
       VertexIndex* to = mesh_.high_nodes.data() + t * each;
       for (std::size_t e = 0; e < 6; ++e) {
-        const bool runs = tet[static_cast<std::size_t>(kTetEdges[e][0])] < tet[static_cast<std::size_t>(kTetEdges[e][1])];
+        const bool runs =
+            tet[static_cast<std::size_t>(kTetEdges[e][0])] < tet[static_cast<std::size_t>(kTetEdges[e][1])];
         const std::size_t inside = nodes_in_edge(order_);
         for (std::size_t k = 0; k < inside; ++k) *to++ = node_in_edge(edge_of_[t][e], runs ? k : inside - 1 - k);
       }
@@ -184,12 +183,11 @@ class HighOrder {
   void take(const Bends& bends) {
     bent_of_edge_.assign(edges_.size(), kNone);
     bent_of_face_.assign(faces_.corners.size(), kNone);
-    for (const EdgeBend& bend : bends.edges)
-      add(bend.by, bent_of_edge_[edges_.find(bend.edge[0], bend.edge[1])]);
+    for (const EdgeBend& bend : bends.edges) add(bend.by, bent_of_edge_[edges_.find(bend.edge[0], bend.edge[1])]);
     bent_edges_ = bent_.size();
     for (const FaceBend& bend : bends.faces) {
-      const auto f = static_cast<std::uint32_t>(std::ranges::lower_bound(faces_.corners, bend.face) -
-                                                faces_.corners.begin());
+      const auto f =
+          static_cast<std::uint32_t>(std::ranges::lower_bound(faces_.corners, bend.face) - faces_.corners.begin());
       NodeMoves by = bend.by;
       for (std::size_t k = 0; k < nodes_in_face(order_); ++k) by[k] -= moved_in_face(f, in_face(order_, k).weights);
       add(by, bent_of_face_[f]);
@@ -262,7 +260,9 @@ class HighOrder {
     const std::span<const Vec3> nodes = nodes_of_tet(mesh_, t, room);
     if (least_scaled_jacobian_bound(order_, nodes) > kLeastScaledOfHigh) return true;
     const JacobianRange range = jacobian_range(order_, nodes);
-    return range.least >= kLeastScaledOfHigh * range.straight && validity_of(order_, nodes) == Validity::kValid;
+    const double wanted = kLeastScaledOfHigh * range.straight;
+    return (range.least >= wanted || least_jacobian(order_, nodes, kPartsOfBent) >= wanted) &&
+           validity_of(order_, nodes) == Validity::kValid;
   }
 
   std::uint32_t most_bent(TetIndex t) const {
@@ -306,8 +306,8 @@ class HighOrder {
   TetFaces faces_;
   std::vector<std::array<std::uint32_t, 6>> edge_of_;  ///< per tet
   TetEdges edges_;
-  std::vector<Bent> bent_;       ///< edges, then faces
-  std::size_t bent_edges_ = 0;   ///< so many of them
+  std::vector<Bent> bent_;      ///< edges, then faces
+  std::size_t bent_edges_ = 0;  ///< so many of them
   std::vector<std::uint32_t> bent_of_edge_, bent_of_face_;
   std::vector<TetIndex> bent_tets_;
 };

@@ -13,6 +13,7 @@
 #include "improve/curved/curved.h"
 #include "improve/curved/easing.h"
 #include "improve/curved/high_order.h"
+#include "improve/curved/inner_nodes.h"
 #include "improve/curved/mid_nodes.h"
 #include "improve/curved/smooth_surface.h"
 
@@ -44,8 +45,12 @@ Judged judge_high(const TetMesh& mesh, TetIndex t) {
   std::array<Vec3, 35> room;
   const std::span<const Vec3> nodes = nodes_of_tet(mesh, t, room);
   if (least_scaled_jacobian_bound(mesh.order(), nodes) > kStraightJacobian) return {};
+  constexpr double kBent = 0.5;
+  constexpr std::size_t kPartsOfJudged = 64;
   const JacobianRange range = jacobian_range(mesh.order(), nodes);
-  return {range.straight == 0 ? 0 : range.least / std::abs(range.straight), validity_of(mesh.order(), nodes)};
+  const bool is_bent = range.least < kBent * range.straight;
+  const double least = is_bent ? least_jacobian(mesh.order(), nodes, kPartsOfJudged) : range.least;
+  return {range.straight == 0 ? 0 : least / std::abs(range.straight), validity_of(mesh.order(), nodes)};
 }
 
 Judged judge(const TetMesh& mesh, TetIndex t) {
@@ -55,7 +60,8 @@ Judged judge(const TetMesh& mesh, TetIndex t) {
   const auto coefficients = jacobian_coefficients(nodes);
   const double least = *std::min_element(coefficients.begin(), coefficients.end());
   const double straight = six_volumes(nodes[0], nodes[1], nodes[2], nodes[3]);
-  return {straight == 0 ? 0 : least / std::abs(straight), has_positive_jacobian(nodes) ? Validity::kValid : Validity::kInvalid};
+  return {straight == 0 ? 0 : least / std::abs(straight),
+          has_positive_jacobian(nodes) ? Validity::kValid : Validity::kInvalid};
 }
 
 void refuse_mid_nodes(const TetMesh& mesh) {
@@ -85,6 +91,7 @@ void add_nodes(TetMesh& mesh, int order, std::span<const VertexIndex> below, cur
                SecondOrderSummary& summary, const RunContext& context) {
   if (order > 2) {
     curved::add_high_order(mesh, order, bends, summary, context);
+    curved::raise_worst_elements(mesh, context);
   } else {
     const curved::TetEdges edges = curved::add_straight_mid_nodes(mesh);
     curved::add_edges_above(below, edges, bends);

@@ -18,7 +18,7 @@ namespace {
 
 using Map = std::function<Vec3(Vec3)>;
 
-const std::array<Vec3, 4> kUnit{Vec3{0, 0, 0}, Vec3{1, 0, 0}, Vec3{0, 1, 0}, Vec3{0, 0, 1}};
+const std::array<Vec3, 4> kUnitCorners{Vec3{0, 0, 0}, Vec3{1, 0, 0}, Vec3{0, 1, 0}, Vec3{0, 0, 1}};
 
 Vec3 place_of(int order, std::size_t node) {
   const TetLattice::Weights& w = tet_lattice(order).weights(node);
@@ -26,7 +26,7 @@ Vec3 place_of(int order, std::size_t node) {
 }
 
 /// The nodes of the unit tetrahedron where this map has them.
-std::vector<Vec3> nodes_of(int order, const Map& map) {
+std::vector<Vec3> nodes_by(int order, const Map& map) {
   std::vector<Vec3> nodes;
   for (std::size_t n = 0; n < tet_lattice(order).size(); ++n) nodes.push_back(map(place_of(order, n)));
   return nodes;
@@ -70,7 +70,7 @@ TEST(CurvedTet, HasTheJacobianOfItsMap) {
     return dot(x, cross(y, z));
   };
   for (int order = 2; order <= kMostOrder; ++order) {
-    const std::vector<double> coefficients = jacobian_coefficients(order, nodes_of(order, map));
+    const std::vector<double> coefficients = jacobian_coefficients(order, nodes_by(order, map));
     for (const Vec3 at : {Vec3{0, 0, 0}, Vec3{1, 0, 0}, Vec3{0.2, 0.3, 0.1}, Vec3{0.1, 0.1, 0.7}, Vec3{0, 0.5, 0.5}})
       EXPECT_NEAR(value(3 * (order - 1), coefficients, at), jacobian(at), 1e-13) << order;
   }
@@ -100,7 +100,7 @@ TEST(CurvedTet, StraightEdgesHaveOneCoefficient) {
            p.z * (corners[3] - corners[0]);
   };
   for (int order = 3; order <= kMostOrder; ++order) {
-    const std::vector<Vec3> nodes = nodes_of(order, straight);
+    const std::vector<Vec3> nodes = nodes_by(order, straight);
     const JacobianRange range = jacobian_range(order, nodes);
     EXPECT_NEAR(range.least, range.straight, 1e-11);
     EXPECT_NEAR(range.most, range.straight, 1e-11);
@@ -121,19 +121,19 @@ Map with_dip(double e) {
 
 TEST(CurvedTet, ADipInsideIsFound) {
   for (int order = 3; order <= kMostOrder; ++order) {
-    EXPECT_EQ(validity_of(order, nodes_of(order, with_dip(1e-3))), Validity::kInvalid) << order;
+    EXPECT_EQ(validity_of(order, nodes_by(order, with_dip(1e-3))), Validity::kInvalid) << order;
     // Its coefficients are not all positive: halves tell.
-    const std::vector<Vec3> shallow = nodes_of(order, with_dip(-4e-3));
+    const std::vector<Vec3> shallow = nodes_by(order, with_dip(-4e-3));
     EXPECT_LT(jacobian_range(order, shallow).least, 0);
     EXPECT_EQ(validity_of(order, shallow), Validity::kValid) << order;
-    EXPECT_NE(validity_of(order, nodes_of(order, with_dip(0))), Validity::kValid) << order;
+    EXPECT_NE(validity_of(order, nodes_by(order, with_dip(0))), Validity::kValid) << order;
   }
 }
 
 TEST(CurvedTet, InsideOutIsInvalid) {
   for (int order = 2; order <= kMostOrder; ++order) {
-    EXPECT_EQ(validity_of(order, nodes_of(order, [](Vec3 p) { return Vec3{p.y, p.x, p.z}; })), Validity::kInvalid);
-    EXPECT_NE(validity_of(order, nodes_of(order, [](Vec3 p) { return Vec3{p.x, p.y, 0}; })), Validity::kValid);
+    EXPECT_EQ(validity_of(order, nodes_by(order, [](Vec3 p) { return Vec3{p.y, p.x, p.z}; })), Validity::kInvalid);
+    EXPECT_NE(validity_of(order, nodes_by(order, [](Vec3 p) { return Vec3{p.x, p.y, 0}; })), Validity::kValid);
   }
 }
 
@@ -142,7 +142,7 @@ TEST(CurvedTet, TheBoundIsOne) {
   for (int order = 3; order <= kMostOrder; ++order)
     for (int i = 0; i < 200; ++i) {
       const double by = 0.2 * random.unit();
-      const std::vector<Vec3> nodes = nodes_of(order, [&](Vec3 p) {
+      const std::vector<Vec3> nodes = nodes_by(order, [&](Vec3 p) {
         return p + by * Vec3{random.unit() - 0.5, random.unit() - 0.5, random.unit() - 0.5};
       });
       const JacobianRange range = jacobian_range(order, nodes);
