@@ -50,7 +50,7 @@ std::vector<MeshField> fields_to_carry(Session& session, const TetMesh& mesh) {
     throw OptionError("--carry: no output holds fields; write .vtu, .vtk, .msh, .med, .exo, .cgns or .xdmf");
   }
   // What was not asked for is no reason to fail.
-  if (is_default && mesh.is_second_order()) return {};
+  if (is_default && mesh.order() > 1) return {};
   try {
     FieldsOfFile found =
         read_fields(a.input.string(), mesh, is_default ? std::vector<std::string>{} : a.carry, session.context());

@@ -256,8 +256,11 @@ std::vector<LineOption> output_options() {
        "Write the report as JSON, also of a run that fails; -: to standard output, alone",
        value([](Arguments & a) -> auto& { return a.json; }), "The report as JSON; -: to standard output"},
       {"convert", kGroup, "--order", "",
-       "1: mid-side nodes are dropped; 2: they are added where there are none, in the middle of straight edges [keep]",
-       choice_of<int>({{"keep", 0}, {"1", 1}, {"2", 2}}, [](Arguments& a, int order) { a.new_order = order; })},
+       "1: nodes behind the corners are dropped; 2, 3, 4: the mesh gets those of this order, with straight edges, "
+       "unless "
+       "it has it [keep]",
+       choice_of<int>({{"keep", 0}, {"1", 1}, {"2", 2}, {"3", 3}, {"4", 4}},
+                      [](Arguments& a, int order) { a.new_order = order; })},
   };
 }
 

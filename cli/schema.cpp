@@ -114,7 +114,7 @@ constexpr ReportField kReport[] = {
     {"points", "integer", "vertices and mid-side nodes"},
     {"tets", "integer", "elements"},
     {"boundary_faces", "integer", ""},
-    {"order", "integer", "1 or 2"},
+    {"order", "integer", "1 to 4"},
     {"volume", "number", "of the mesh, or of what was read"},
     {"input_volume", "number", "of the surface"},
     {"true_volume", "number", "of the CAD solids"},
