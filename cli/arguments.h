@@ -44,6 +44,8 @@ struct Arguments {
   std::filesystem::path regions, point_sizes, size_field;  ///< files with sizes; empty: none
   std::string metric;                                      ///< FILE[:FIELD] with a metric; empty: none
   std::string field;                                       ///< of the input, of which a metric is made; empty: none
+  std::string displacement;                                ///< the field of the input that it moves by
+  std::vector<std::pair<std::string, double>> level_sets;  ///< fields of the input, and the values of their surfaces
   double norm = 2;                                         ///< p of L^p, in which that metric makes its error least
   std::filesystem::path metric_out;                        ///< where the metric is written; empty: nowhere
   Options options;
@@ -68,6 +70,7 @@ struct Arguments {
 /// What a command works on: files that become a surface, or a mesh. `what`: in words.
 void declare_input(CLI::App& command, Arguments& arguments, const std::string& what = {});
 void declare_mesh_input(CLI::App& command, Arguments& arguments);
+void declare_two_meshes(CLI::App& command, Arguments& arguments);
 
 /// Declares the options that the command of this name takes: the rows of the library's tables
 /// (octafront/option_table.h) and of line_options.h, group by group; only those of one group, where one is named. A
@@ -76,6 +79,7 @@ void declare_options(CLI::App& command, std::string_view name, Arguments& argume
 
 /// The commands of the program.
 std::vector<const CLI::App*> commands_of(const CLI::App& app);
+std::vector<std::string> names_of_commands(const CLI::App& app);
 
 /// Every option of a command, those of its groups too.
 std::vector<const CLI::Option*> options_of(const CLI::App& command);

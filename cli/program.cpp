@@ -12,7 +12,6 @@
 #include "text.h"
 #include "units.h"
 
-#include <cstdio>
 #include <map>
 
 #include <fmt/core.h>
@@ -28,12 +27,6 @@ std::vector<std::string> names_of_options(const CLI::App& command) {
   std::vector<std::string> names;
   for (const CLI::Option* option : options_of(command))
     for (const std::string& name : option->get_lnames()) names.push_back("--" + name);
-  return names;
-}
-
-std::vector<std::string> names_of_commands(const CLI::App& app) {
-  std::vector<std::string> names;
-  for (const CLI::App* command : commands_of(app)) names.push_back(command->get_name());
   return names;
 }
 
@@ -109,7 +102,7 @@ struct CommandRow {
   void (*run)(Session&);
 };
 /// Inputs that become a surface, and a mesh.
-constexpr const char *kFiles = "", *kMesh = "mesh";
+constexpr const char *kFiles = "", *kMesh = "mesh", *kTwoMeshes = "meshes";
 
 const std::vector<CommandRow>& command_rows() {
   static const std::vector<CommandRow> rows{
@@ -148,8 +141,18 @@ const std::vector<CommandRow>& command_rows() {
        "  octafront adapt in.mesh --metric in.sol -o out.mesh       other lengths in other directions\n"
        "  octafront adapt in.vtu --from u --elements 1e5 -o out.vtu    where a field bends\n"
        "  octafront adapt in.msh --size 1 --surface part.step -o out.msh    on the geometry that was meshed\n"
+       "  octafront adapt in.vtu --level-set u=1 -o out.vtu         a region below it, faces where u is 1\n"
        "  octafront adapt part.stl --size 1 -o finer.ply            a surface alone\n",
        kMesh, run_adapt},
+      {"move", "Move a mesh by a field, and mend it on the way: octafront move load.vtu --displacement u -o out.vtu",
+       "  octafront move load.vtu --displacement u -o out.vtu       with all other fields of load.vtu\n"
+       "  octafront move load.vtu --displacement u -o out.vtu --least-quality .3 --json history.json\n",
+       kMesh, run_move},
+      {"carry", "Bring fields of one mesh to another: octafront carry old.vtu new.msh -o new.vtu",
+       "  octafront carry old.vtu new.msh -o new.vtu                all fields of old.vtu\n"
+       "  octafront carry old.vtu new.vtu -o out.vtk --carry T,rho --json report.json\n"
+       "  octafront carry old.vtu new.vtu -o both.vtu --linear-elements    of second order in elements\n",
+       kTwoMeshes, run_carry},
       {"convert", "Another format, with all names and sets that it holds: in.msh -o out.inp",
        "  octafront convert in.med -o out.inp\n"
        "  octafront convert in.msh -o out.bdf --group load=box:0,0,0,1,1,0\n"
@@ -184,6 +187,8 @@ void Program::declare_commands() {
     CLI::App* command = add(row.name, row.about, row.examples, row.run);
     if (row.input == std::string_view(kMesh))
       declare_mesh_input(*command, arguments_);
+    else if (row.input == std::string_view(kTwoMeshes))
+      declare_two_meshes(*command, arguments_);
     else
       declare_input(*command, arguments_, row.input);
     declare_options(*command, row.name, arguments_);

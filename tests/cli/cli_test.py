@@ -612,7 +612,7 @@ class CommandLine(unittest.TestCase):
         with_field.write_text(text.partition("POINT_DATA")[0] + field)
         out = self.dir / "b.vtk"
         self.run_cli("adapt", with_field, "--size", 5, "-o", out, "--ascii", "--json", report)
-        self.assertEqual(json.loads(report.read_text())["carried"], [{"name": "T", "of": "points", "components": 1}])
+        self.assertEqual([(f["name"], f["of"], f["components"]) for f in json.loads(report.read_text())["carried"]], [("T", "points", 1)])
         made = out.read_text()
         count = int(made.split("POINTS ")[1].split()[0])
         xs = [float(w) for w in made.split("POINTS ")[1].split()[2:2 + 3 * count]][0::3]
@@ -621,11 +621,105 @@ class CommandLine(unittest.TestCase):
         self.assertLess(sorted(abs(x - t) for x, t in zip(xs, values))[count // 2], 1e-9)
         # And again from that file, without one, and where it is not.
         self.run_cli("adapt", out, "--size", 8, "-o", self.dir / "c.msh", "--json", report)
-        self.assertEqual(json.loads(report.read_text())["carried"], [{"name": "T", "of": "points", "components": 1}])
+        self.assertEqual([(f["name"], f["of"], f["components"]) for f in json.loads(report.read_text())["carried"]], [("T", "points", 1)])
         self.run_cli("adapt", out, "--size", 8, "-o", self.dir / "c.vtu", "--carry", "none", "--json", report)
         self.assertNotIn("carried", json.loads(report.read_text()))
         self.assertIn("no field", self.run_cli("adapt", out, "--size", 8, "-o", self.dir / "d.vtu", "--carry", "u", status=3).stderr)
         self.run_cli("adapt", out, "--size", 8, "-o", self.dir / "d.inp", "--carry", "T", status=2)
+
+    def test_carries_fields_to_another_mesh(self):
+        old, new, out, report = (self.dir / name for name in ("old.vtu", "new.msh", "out.vtk", "r.json"))
+        self.run_cli("mesh", SAMPLES / "bracket.stl", "-o", old, "--size", 8, "--keep-surface", "--field", "T=300+x", "--field", "s=T^2")
+        self.run_cli("mesh", SAMPLES / "bracket.stl", "-o", new, "--size", 6, "--keep-surface")
+        done = self.run_cli("carry", old, new, "-o", out, "--ascii", "--json", report)
+        self.assertIn("integral", done.stdout)
+        told = json.loads(report.read_text())
+        self.assertEqual(told["inputs"], [str(old), str(new)])
+        self.assertEqual(len(told["carried"]), 4)
+        for field in told["carried"]:
+            self.assertEqual(field["beyond"], 0)
+            self.assertLess(field["integral_error"], 1e-12)
+            self.assertGreaterEqual(field["after"]["least"][0], field["before"]["least"][0])
+            self.assertLessEqual(field["after"]["greatest"][0], field["before"]["greatest"][0])
+        made = out.read_text()
+        count = int(made.split("POINTS ")[1].split()[0])
+        xs = [float(w) for w in made.split("POINTS ")[1].split()[2:2 + 3 * count]][0::3]
+        values = [float(w) for w in made.split("T 1 %d double" % count)[1].split()[:count]]
+        self.assertLess(max(abs(300 + x - t) for x, t in zip(xs, values)), 1e-9)
+        self.run_cli("carry", out, new, "-o", self.dir / "again.vtu", "--linear-elements", "--free-integrals", "--carry", "T", "--json", report)
+        self.assertEqual([f["of"] for f in json.loads(report.read_text())["carried"]], ["points", "elements"])
+        # Improvement takes them along, too.
+        self.run_cli("improve", old, "-o", self.dir / "better.vtu", "--json", report)
+        self.assertLess(max(f["integral_error"] for f in json.loads(report.read_text())["carried"]), 1e-12)
+        for words, status, said in ((("carry", new, old, "-o", out), 3, "no field"), (("carry", old, "-o", out), 2, "2"),
+                                    (("carry", old, new, "-o", self.dir / "x.inp"), 2, "no output holds fields"),
+                                    (("carry", old, new, "-o", new), 2, "overwritten"), (("carry", old, new, "-o", out, "--carry", "nosuch"), 3, "nosuch")):
+            self.assertIn(said, self.run_cli(*words, status=status).stderr)
+
+    def test_level_sets_become_faces(self):
+        start, out, report = self.dir / "in.vtu", self.dir / "out.vtu", self.dir / "r.json"
+        self.run_cli("mesh", SAMPLES / "bracket.stl", "-o", start, "--size", 4, "--field", "phi=sqrt((x-5)^2+y^2+(z-4)^2)-9", "--field", "low=z-3")
+        done = self.run_cli("adapt", start, "--level-set", "phi", "--level-set", "low=.2", "-o", out, "--json", report)
+        self.assertIn("between regions", done.stdout)
+        told = json.loads(report.read_text())
+        self.assertEqual([r["name"] for r in told["regions"]], ["outside", "phi", "low"])
+        self.assertEqual([c["name"] for c in told["level_sets"]], ["phi", "low"])
+        self.assertLess(max(f["integral_error"] for f in told["carried"]), 1e-12)
+        self.assertIn("phi_surface", self.run_cli("check", out).stdout)
+        for words, status in ((("--level-set", "nosuch"), 3), (("--level-set", "phi=x"), 2), (("--level-set", "phi", "--map", self.dir / "m.csv"), 2),
+                              (("--level-set", "phi", "--level-set", "phi=1"), 2), (("--level-set", "phi", "--least-piece", "-1"), 2)):
+            self.run_cli("adapt", start, "-o", self.dir / "x.vtu", *words, status=status)
+        self.assertNotIn("x.vtu", self.files())
+
+    def test_moves_by_a_field(self):
+        bare, start, out, report = (self.dir / name for name in ("a.vtk", "in.vtk", "out.vtu", "r.json"))
+        self.run_cli("mesh", SAMPLES / "bracket.stl", "-o", bare, "--size", 8, "--ascii")
+        text = bare.read_text()
+        count = int(text.split("POINTS ")[1].split()[0])
+        xyz = [float(w) for w in text.split("POINTS ")[1].split()[2:2 + 3 * count]]
+
+        def moved(name, row, status=0):
+            rows = "\n".join(row(*xyz[i:i + 3]) for i in range(0, 3 * count, 3))
+            start.write_text(text.partition("POINT_DATA")[0] + f"POINT_DATA {count}\nFIELD f 2\n{name} 3 {count} double\n{rows}\n"
+                             f"x 1 {count} double\n" + "\n".join(map(repr, xyz[0::3])) + "\n")
+            return self.run_cli("move", start, "--displacement", "u", "-o", out, "--json", report, status=status)
+        moved("u", lambda x, y, z: f"{2 * x!r} 0 0")
+        told = json.loads(report.read_text())
+        self.assertEqual(told["history"][-1]["fraction"], 1)
+        self.assertEqual([f["name"] for f in told.get("carried", [{"name": "x"}])], ["x"])
+        volume = json.loads(self.run_cli("check", bare, "--json", "-").stdout)["volume"]
+        self.assertAlmostEqual(told["history"][-1]["volume"] / volume, 3, delta=0.03)
+        out.unlink()
+        self.assertIn("cannot follow", moved("u", lambda x, y, z: f"{-2 * x!r} 0 0", status=4).stderr)
+        self.assertIn("no field", moved("v", lambda x, y, z: "0 0 0", status=3).stderr)
+        self.run_cli("move", start, "-o", out, status=2)
+        self.assertNotIn(out.name, self.files())
+
+    def test_carries_vectors_of_elements(self):
+        old = self.dir / "old.vtk"
+        old.write_text("""# vtk DataFile Version 3.0
+a tetrahedron of two
+ASCII
+DATASET UNSTRUCTURED_GRID
+POINTS 5 double
+0 0 0  1 0 0  0 1 0  0 0 1  1 1 1
+CELLS 2 10
+4 0 1 2 3
+4 1 2 3 4
+CELL_TYPES 2
+10 10
+CELL_DATA 2
+VECTORS v double
+1 2 3
+4 5 6
+""".replace("VECTORS v double", "FIELD more 1\nv 3 2 double"))
+        out, report = self.dir / "out.vtu", self.dir / "r.json"
+        self.run_cli("carry", old, old, "-o", out, "--json", report)
+        field = json.loads(report.read_text())["carried"][0]
+        self.assertEqual((field["components"], field["after"]), (3, field["before"]))
+        self.assertEqual((field["before"]["least"], field["before"]["greatest"]), ([1, 2, 3], [4, 5, 6]))
+        self.run_cli("carry", out, old, "-o", self.dir / "again.vtk", "--json", report)
+        self.assertEqual(json.loads(report.read_text())["carried"][0], field)
 
     def test_adapts_only_what_is_asked(self):
         start, out, table, report = (self.dir / name for name in ("a.msh", "b.msh", "map.json", "r.json"))

@@ -109,6 +109,11 @@ class Help(unittest.TestCase):
         text = (self.dir / "in.vtu").read_text()
         (self.dir / "in.vtu").write_text(text.replace(
             "<PointData>", f'<PointData><DataArray type="Float64" Name="u" format="ascii">{values}</DataArray>', 1))
+        self.run_cli("convert", self.dir / "in.msh", "-o", self.dir / "old.vtu", "--field", "T=x", "--field", "rho=y*y")
+        self.run_cli("convert", self.dir / "in.msh", "-o", self.dir / "new.msh", "-o", self.dir / "new.vtu")
+        vectors = " ".join(["0.1 0 0"] * points)
+        (self.dir / "load.vtu").write_text(text.replace(
+            "<PointData>", f'<PointData><DataArray type="Float64" Name="u" NumberOfComponents="3" format="ascii">{vectors}</DataArray>', 1))
         for command in self.commands():
             examples = self.run_cli("help", command).out.split("Examples:\n")[1]
             for line in examples.splitlines():

@@ -7,7 +7,6 @@
 #include <filesystem>
 #include <fstream>
 #include <limits>
-#include <new>
 #include <string_view>
 #include <thread>
 

@@ -2,7 +2,6 @@
 #include <octafront/limits.h>
 
 #include <algorithm>
-#include <array>
 #include <cctype>
 #include <filesystem>
 #include <fstream>

@@ -4,6 +4,7 @@
 #include <octafront/limits.h>
 
 #include <algorithm>
+#include <array>
 #include <cstdlib>
 #include <limits>
 #include <system_error>

@@ -172,4 +172,10 @@ std::string in_quotes(std::string_view text) {
   return out + '"';
 }
 
+std::string names_in_quotes(std::span<const std::string> names) {
+  std::string list;
+  for (const std::string& name : names) list += (list.empty() ? "" : ", ") + in_quotes(name);
+  return list;
+}
+
 }  // namespace octafront::io

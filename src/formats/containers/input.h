@@ -10,6 +10,7 @@
 #include <cstddef>
 #include <filesystem>
 #include <memory>
+#include <span>
 #include <string>
 #include <string_view>
 
@@ -25,6 +26,8 @@ struct Input {
   const std::string* field = nullptr;
   /// Fields of tensors at points are asked for: of 6 or 9 numbers; of single numbers those that are named.
   bool wants_tensors = false;
+  /// Of a field that is asked for by its name also elements may have several numbers.
+  bool wants_element_tensors = false;
 
   /// Throws InputError "NAME: message".
   [[noreturn]] void fail(std::string_view message) const;
@@ -71,5 +74,7 @@ class LoadedFile {
 
 /// `text` in quotes for a message: cut to some forty characters, unprintable bytes as \xNN.
 std::string in_quotes(std::string_view text);
+/// The names, each in quotes, with commas between them.
+std::string names_in_quotes(std::span<const std::string> names);
 
 }  // namespace octafront::io

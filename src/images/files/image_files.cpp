@@ -14,7 +14,6 @@
 #include <array>
 #include <filesystem>
 #include <fstream>
-#include <initializer_list>
 
 #include <fmt/core.h>
 
