@@ -94,11 +94,11 @@ class TetClipper {
 };
 
 /// How the corners of one lie to the planes of the other.
-enum class Side { kInside, kDivided, kOutside };
+enum class Side { kWithin, kDivided, kOutside };
 
 template <std::size_t N>
 Side heights_over(const TetPlanes& planes, const TetCorners& corners, std::array<std::array<double, N>, 4>& heights) {
-  Side side = Side::kInside;
+  Side side = Side::kWithin;
   for (std::size_t face = 0; face < 4; ++face) {
     double lowest = std::numeric_limits<double>::infinity(), highest = -lowest;
     for (std::size_t k = 0; k < 4; ++k) {
@@ -121,8 +121,8 @@ TetOverlap overlap_of(const TetPlanes& a, const TetCorners& corners_of_b) {
   typename TetClipper<N>::Cell cell{};
   const Side a_in_b = heights_over(b, a.corners(), cell);
   if (a_in_b == Side::kOutside) return {};
-  if (a_in_b == Side::kInside) return {1, a.centre() - origin};
-  if (b_in_a == Side::kInside) {
+  if (a_in_b == Side::kWithin) return {1, a.centre() - origin};
+  if (b_in_a == Side::kWithin) {
     const double share = std::min(1.0, b.volume() / a.volume());
     return {share, share * (b.centre() - origin)};
   }
