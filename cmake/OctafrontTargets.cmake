@@ -108,11 +108,16 @@ function(octafront_part wing part)
   set_property(GLOBAL APPEND PROPERTY octafront_parts_of_${wing} ${target})
 endfunction()
 
-# octafront_objects(VARIABLE WING): the objects of a wing, those of its parts with them.
-function(octafront_objects variable wing)
-  get_property(parts GLOBAL PROPERTY octafront_parts_of_${wing})
+# octafront_objects(VARIABLE WINGS ...): the objects of wings, those of their parts behind them: a function of a header that
+# several objects have is linked as the first of them has it, and what is compiled for speed comes first.
+function(octafront_objects variable)
+  foreach(wing IN LISTS ARGN)
+    get_property(of_wing GLOBAL PROPERTY octafront_parts_of_${wing})
+    list(APPEND parts ${of_wing})
+  endforeach()
+  list(TRANSFORM ARGN REPLACE "(.+)" "$<TARGET_OBJECTS:octafront_\\1>" OUTPUT_VARIABLE objects)
   list(TRANSFORM parts REPLACE "(.+)" "$<TARGET_OBJECTS:\\1>")
-  set(${variable} $<TARGET_OBJECTS:octafront_${wing}> ${parts} PARENT_SCOPE)
+  set(${variable} ${objects} ${parts} PARENT_SCOPE)
 endfunction()
 
 # octafront_room(WING/ROOM [LIGHT] SOURCES ...): the sources of a room, from its folder; of a wing that is one room: its own.

@@ -11,7 +11,8 @@
 namespace octafront::adapt {
 namespace {
 
-/// Points move by this part of an edge at most: beyond, the one at its other end is as near.
+/// Points move by this part of their shortest edge at most: beyond, others are as near, and what is as small as an
+/// element would vanish.
 constexpr double kFarthestMove = 0.4;
 /// Elements become no worse than this part of the poorest of those around, or than what is sound anyhow (3 r / R).
 constexpr double kWorstPart = 0.5, kSound = 0.25;
@@ -107,6 +108,14 @@ class SurfaceMover {
     return best;
   }
 
+  double shortest_edge(VertexIndex v) const {
+    double shortest = std::numeric_limits<double>::infinity();
+    for (const TetIndex t : around_[v])
+      for (const VertexIndex w : mesh_.tets[t])
+        if (w != v) shortest = std::min(shortest, distance(mesh_.points[v], mesh_.points[w]));
+    return shortest;
+  }
+
   double poorest_around(VertexIndex v) const {
     double poorest = 1;
     for (const TetIndex t : around_[v]) {
@@ -126,8 +135,9 @@ class SurfaceMover {
   bool move(VertexIndex v) {
     const bool is_on_wall = freedom_[v] == Freedom::kOnWall;
     const Crossing to = nearest_crossing(v, is_on_wall);
-    if (!(to.part <= kFarthestMove)) return false;
+    if (to.end == kNone) return false;
     const Vec3 before = mesh_.points[v], direction = is_on_wall ? normal(walls_around_[v][0]) : Vec3{};
+    if (to.part * distance(before, mesh_.points[to.end]) > kFarthestMove * shortest_edge(v)) return false;
     const double wanted = std::min(kSound, kWorstPart * poorest_around(v));
     mesh_.points[v] = before + to.part * (mesh_.points[to.end] - before);
     if (poorest_around(v) < wanted || (is_on_wall && !walls_stay(v, direction))) {

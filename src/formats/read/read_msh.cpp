@@ -276,6 +276,17 @@ void permute(std::vector<T>& items, const std::vector<std::uint32_t>& place) {
   items = std::move(ordered);
 }
 
+/// The same of rows of equal length, of a list that has one for each place.
+void permute_rows(std::vector<VertexIndex>& items, const std::vector<std::uint32_t>& place) {
+  if (items.empty() || place.empty() || items.size() % place.size() != 0) return;
+  const std::size_t each = items.size() / place.size();
+  std::vector<VertexIndex> ordered(items.size());
+  for (std::size_t i = 0; i < place.size(); ++i)
+    std::copy_n(items.begin() + static_cast<std::ptrdiff_t>(i * each), each,
+                ordered.begin() + static_cast<std::ptrdiff_t>(place[i] * each));
+  items = std::move(ordered);
+}
+
 /// Of wide cells or faces, whose parts have one tag and stay together.
 template <class Wide>
 void sort_wide(std::vector<Wide>& wide, const std::vector<std::uint32_t>& place) {
@@ -300,6 +311,7 @@ void sort_by_tags(RawMesh& raw, const std::vector<std::uint64_t>& node_tags,
     for (auto& mids : raw.mid_nodes)
       for (VertexIndex& v : mids)
         if (v != kNone) v = place[0][v];
+    for (VertexIndex& v : raw.high_nodes) v = place[0][v];
     renumber_wide(raw, place[0]);
   }
   sort_wide(raw.wide_cells, place[3]);
@@ -310,6 +322,7 @@ void sort_by_tags(RawMesh& raw, const std::vector<std::uint64_t>& node_tags,
   permute(raw.triangle_ref, place[2]);
   permute(raw.tets, place[3]);
   permute(raw.mid_nodes, place[3]);
+  permute_rows(raw.high_nodes, place[3]);
   permute(raw.tet_ref, place[3]);
   if (!place[0].empty())
     for (RawMesh::Period& period : raw.periods)
