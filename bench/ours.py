@@ -1,8 +1,18 @@
 """Octafront as a program: run in a process of its own, its report read, its meshes judged by octafront_evaluate."""
+import argparse
 import json
 import pathlib
 
 from bench.process import finish, run_measured
+
+
+def asked_program():
+    """Of a benchmark's command line, BUILD [--program FILE]: the octafront to run."""
+    arguments = argparse.ArgumentParser()
+    arguments.add_argument("build", type=pathlib.Path)
+    arguments.add_argument("--program", type=pathlib.Path)
+    a = arguments.parse_args()
+    return (a.program or a.build / "cli/octafront").resolve()
 
 
 def mesh(program, source, folder, timeout, *options, out="out.vtu", threads=1):

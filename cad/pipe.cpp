@@ -10,7 +10,6 @@
 #include <TCollection_AsciiString.hxx>
 #include <algorithm>
 #include <cerrno>
-#include <climits>
 #include <cmath>
 
 #include <fcntl.h>

@@ -1,7 +1,6 @@
 #pragma once
 
 #include "cad/model/stream.h"
-#include "part.h"
 
 #include <Message_ProgressRange.hxx>
 #include <string>

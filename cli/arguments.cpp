@@ -1,6 +1,5 @@
 #include "arguments.h"
 
-#include <octafront/error.h>
 #include <octafront/io.h>
 #include <octafront/option_table.h>
 
@@ -8,7 +7,6 @@
 #include "units.h"
 
 #include <algorithm>
-#include <utility>
 #include <vector>
 
 #include <fmt/core.h>
@@ -245,6 +243,12 @@ void declare_options(CLI::App& command, std::string_view name, Arguments& a, std
 
 std::vector<const CLI::App*> commands_of(const CLI::App& app) {
   return app.get_subcommands([](const CLI::App* command) { return !command->get_name().empty(); });
+}
+
+std::vector<std::string> names_of_commands(const CLI::App& app) {
+  std::vector<std::string> names;
+  for (const CLI::App* command : commands_of(app)) names.push_back(command->get_name());
+  return names;
 }
 
 std::vector<const CLI::Option*> options_of(const CLI::App& command) {

@@ -4,6 +4,7 @@
 #include <octafront/io.h>
 #include <octafront/limits.h>
 #include <octafront/options.h>
+#include <octafront/picture.h>
 #include <octafront/solver_checks.h>
 
 #include "option_names.h"
@@ -56,7 +57,8 @@ struct Arguments {
   std::vector<std::pair<std::string, std::string>> samples;   ///< images and what their values are called on the mesh
   std::vector<std::pair<std::string, std::string>> formulas;  ///< fields by name and formula, in turn
   std::uint32_t material_bins = 0;                            ///< of the last field; 0: none
-  int new_order = 0;                                          ///< of a converted mesh; 0: as it is
+  PictureOptions picture;
+  int new_order = 0;  ///< of a converted mesh; 0: as it is
   int threads = 0;
   ProcessLimits limits;
   bool quiet = false;
@@ -77,6 +79,7 @@ void declare_options(CLI::App& command, std::string_view name, Arguments& argume
 
 /// The commands of the program.
 std::vector<const CLI::App*> commands_of(const CLI::App& app);
+std::vector<std::string> names_of_commands(const CLI::App& app);
 
 /// Every option of a command, those of its groups too.
 std::vector<const CLI::Option*> options_of(const CLI::App& command);

@@ -50,7 +50,7 @@ std::vector<MeshField> fields_to_carry(Session& session, const TetMesh& mesh) {
     throw OptionError("--carry: no output holds fields; write .vtu, .vtk, .msh, .med, .exo, .cgns or .xdmf");
   }
   // What was not asked for is no reason to fail.
-  if (is_default && mesh.is_second_order()) return {};
+  if (is_default && mesh.order() > 1) return {};
   try {
     FieldsOfFile found =
         read_fields(a.input.string(), mesh, is_default ? std::vector<std::string>{} : a.carry, session.context());
@@ -78,9 +78,9 @@ void run_carry(Session& session) {
   if (!some_target_holds_fields(a))
     throw OptionError("no output holds fields; write .vtu, .vtk, .msh, .med, .exo, .cgns or .xdmf");
   const TetMesh before = read_mesh_input(session), now = read_mesh_file_of(session, a.bodies[1]).mesh;
-  if (before.is_second_order())
-    throw InputError(fmt::format(
-        "{}: is of second order, and fields are of linear elements (octafront convert --order 1)", a.input.string()));
+  if (before.order() > 1)
+    throw InputError(fmt::format("{}: is of order {}, and fields are of linear elements (octafront convert --order 1)",
+                                 a.input.string(), before.order()));
   const std::vector<MeshField> fields = fields_to_carry(session, before);
   if (fields.empty())
     throw InputError(fmt::format("{}: has no field that can be carried: at points, or of tetrahedra, one value each",

@@ -43,12 +43,12 @@ Options checked_options_of(const Session& session) {
 
 // Invalid elements of second order are named, for solvers stop at them.
 void prove_jacobians(Session& session, const TetMesh& mesh) {
-  if (!mesh.is_second_order()) return;
+  if (mesh.order() == 1) return;
   const JacobianSummary found = check_jacobians(mesh, session.context());
   session.found({{"second_order", Json::parse(to_json(found))}});
   if (found.invalid == 0) {
-    session.say(fmt::format("second order: every Jacobian proven positive; the least scaled one is {:.4f} (tet {})\n",
-                            found.least_scaled_jacobian, found.least_tet));
+    session.say(fmt::format("order {}: every Jacobian proven positive; the least scaled one is {:.4f} (tet {})\n",
+                            mesh.order(), found.least_scaled_jacobian, found.least_tet));
     return;
   }
   session.found({{"kind", "mesh"}, {"valid", false}});
@@ -58,8 +58,9 @@ void prove_jacobians(Session& session, const TetMesh& mesh) {
                         e.at.y, e.at.z, e.scaled_jacobian);
   throw InputError(
       fmt::format("{}: the Jacobian of {} is not positive everywhere, by the exact signs of its "
-                  "coefficients; move mid-side nodes towards the middle of their edges, or mesh anew:{}{}",
-                  session.arguments().input.string(), counted(found.invalid, "element"), list,
+                  "coefficients{}; move nodes towards where those of straight edges are, or mesh anew:{}{}",
+                  session.arguments().input.string(), counted(found.invalid, "element"),
+                  found.undecided > 0 ? fmt::format(" (of {} it is too near to 0 to tell)", found.undecided) : "", list,
                   found.invalid > found.first.size() ? "\n  ..." : ""));
 }
 
@@ -394,7 +395,7 @@ namespace {
 void convert_surface_input(Session& session) {
   const Arguments& a = session.arguments();
   check_surface_targets(a);
-  if (a.new_order == 2) throw OptionError("--order 2 is for tetrahedra, and the input is a surface alone");
+  if (a.new_order > 1) throw OptionError("--order above 1 is for tetrahedra, and the input is a surface alone");
   const SurfaceFile file = read_input(session);
   write_mesh_targets(session, mesh_of_triangles(session, file.surface, file));
   say_written(session);
@@ -409,8 +410,10 @@ void run_convert(Session& session) {
   if (std::filesystem::is_regular_file(a.input) && !holds_tetrahedra(a.input.string(), session.context()))
     return convert_surface_input(session);
   TetMesh mesh = read_mesh_input(session);
-  if (a.new_order == 1) make_linear(mesh);
-  if (a.new_order == 2 && !mesh.is_second_order()) make_second_order(mesh, nullptr, 40, session.context());
+  if (a.new_order > 0 && a.new_order != mesh.order()) {
+    make_linear(mesh);
+    if (a.new_order > 1) make_curved(mesh, a.new_order, nullptr, 40, session.context());
+  }
   // Whoever converts wants the mesh as it is; but nobody should find out in the solver.
   if (const auto defect = first_defect(mesh, session.context()))
     session.say_notes("checking", {"the mesh is not valid: " + *defect});

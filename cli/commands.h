@@ -15,6 +15,7 @@ void run_carry(Session& session);
 void run_move(Session& session);
 void run_check(Session& session);
 void run_report(Session& session);
+void run_picture(Session& session);
 void run_info(Session& session);
 void run_convert(Session& session);
 

@@ -4,8 +4,6 @@
 
 #include "arguments.h"
 
-#include <algorithm>
-
 #include <fmt/core.h>
 
 namespace octafront::cli {
@@ -44,17 +42,11 @@ std::vector<const CLI::Option*> named_options(const CLI::App& command) {
   return options;
 }
 
-std::vector<std::string> command_names(const CLI::App& app) {
-  std::vector<std::string> names;
-  for (const CLI::App* command : commands_of(app)) names.push_back(command->get_name());
-  return names;
-}
-
 /// Words that may stand by place, such as the shells of `completion`.
 std::vector<std::string> words_by_place(const CLI::App& app, const CLI::App& command) {
   for (const CLI::Option* option : options_of(command)) {
     if (!names_of_option(*option).empty()) continue;
-    if (option->get_type_name() == "COMMAND") return command_names(app);
+    if (option->get_type_name() == "COMMAND") return names_of_commands(app);
     return value_of(*option).words;
   }
   return {};
@@ -87,7 +79,7 @@ std::string bash_script(const CLI::App& app) {
       "  local word=${COMP_WORDS[COMP_CWORD]} before=${COMP_WORDS[COMP_CWORD-1]}\n  COMPREPLY=()\n"
       "  if [ \"$COMP_CWORD\" -eq 1 ]; then\n";
   text += fmt::format("    COMPREPLY=($(compgen -W '{} --help --version' -- \"$word\"))\n    return\n  fi\n",
-                      joined_words(command_names(app)));
+                      joined_words(names_of_commands(app)));
   text += "  case ${COMP_WORDS[1]} in\n";
   for (const CLI::App* command : commands_of(app)) text += bash_command(app, *command);
   return text + "  esac\n}\ncomplete -F _octafront octafront\n";

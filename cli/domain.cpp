@@ -8,7 +8,6 @@
 
 #include "text.h"
 
-#include <string>
 #include <vector>
 
 #include <fmt/core.h>

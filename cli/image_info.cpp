@@ -6,7 +6,6 @@
 #include "text.h"
 
 #include <algorithm>
-#include <array>
 #include <cmath>
 #include <vector>
 

@@ -5,7 +5,6 @@
 #include "inputs.h"
 #include "mesh_in_words.h"
 #include "text.h"
-#include "units.h"
 
 #include <algorithm>
 #include <cmath>
@@ -168,10 +167,8 @@ void tell_mesh_info(Session& session, const TetMesh& mesh) {
     const Vec3 p = mesh.points[i];
     volume += dot(cross(mesh.points[j] - p, mesh.points[k] - p), mesh.points[l] - p) / 6;
   }
-  session.found(
-      {{"kind", "mesh"}, {"order", mesh.is_second_order() ? 2 : 1}, {"box", json_of_box(box)}, {"volume", volume}});
-  session.say(
-      fmt::format("  {}\n  volume {:.6g}, order {}\n", box_in_words(box), volume, mesh.is_second_order() ? 2 : 1));
+  session.found({{"kind", "mesh"}, {"order", mesh.order()}, {"box", json_of_box(box)}, {"volume", volume}});
+  session.say(fmt::format("  {}\n  volume {:.6g}, order {}\n", box_in_words(box), volume, mesh.order()));
   tell_mesh(session, mesh, "a mesh");
   tell_places(session, place_names(mesh), false);  // its groups are told, with how large they are
 }

@@ -4,8 +4,6 @@
 
 #include "text.h"
 
-#include <utility>
-
 #include <fmt/core.h>
 
 namespace octafront::cli {
@@ -50,7 +48,7 @@ MeshFile read_mesh_file_of(Session& session, const std::filesystem::path& path) 
   MeshFile file = read_mesh_file(path.string(), session.context());
   require_elements(static_cast<double>(file.mesh.tets.size()), path.string());
   session.say(fmt::format("{}: {}, {} tetrahedra{}\n", path.string(), file.format, file.mesh.tets.size(),
-                          file.mesh.is_second_order() ? " of second order" : ""));
+                          file.mesh.order() > 1 ? fmt::format(" of order {}", file.mesh.order()) : ""));
   tell_reading(session, file.notes);
   return file;
 }

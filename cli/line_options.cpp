@@ -4,11 +4,11 @@
 
 #include "image_arguments.h"
 #include "job_options.h"
+#include "picture_options.h"
 #include "units.h"
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
 #include <utility>
 
 #include <fmt/core.h>
@@ -20,7 +20,7 @@ namespace {
 constexpr std::string_view kWriters = "mesh improve adapt carry move convert";
 constexpr std::string_view kSizers = "mesh surface size adapt";
 constexpr std::string_view kSurfaces = "mesh surface size";
-constexpr std::string_view kAll = "mesh surface repair size improve adapt carry move convert info check report";
+constexpr std::string_view kAll = "mesh surface repair size improve adapt carry move convert info check report picture";
 
 /// One value, or a list of them, that goes to `where(arguments)`.
 template <class Access>
@@ -205,6 +205,8 @@ std::vector<LineOption> output_options() {
        needed([](Arguments & a) -> auto& { return a.output; }), "Surface: .stl, .obj, .off or .ply"},
       {"size", kGroup, "-o,--output", "FILE", "Background grid: .vtu",
        value([](Arguments & a) -> auto& { return a.output; }), "Background grid: .vtu"},
+      {"picture", kGroup, "-o,--output", "FILE", "Picture: .png",
+       needed([](Arguments & a) -> auto& { return a.output; }), "Picture: .png"},
       {"report", kGroup, "-o,--output", "FILE", "Web page: .html, one file that needs no network",
        needed([](Arguments & a) -> auto& { return a.output; }), "Web page: .html, one file that needs no network"},
       {kWriters, kGroup, "--format", "NAME",
@@ -254,8 +256,11 @@ std::vector<LineOption> output_options() {
        "Write the report as JSON, also of a run that fails; -: to standard output, alone",
        value([](Arguments & a) -> auto& { return a.json; }), "The report as JSON; -: to standard output"},
       {"convert", kGroup, "--order", "",
-       "1: mid-side nodes are dropped; 2: they are added where there are none, in the middle of straight edges [keep]",
-       choice_of<int>({{"keep", 0}, {"1", 1}, {"2", 2}}, [](Arguments& a, int order) { a.new_order = order; })},
+       "1: nodes behind the corners are dropped; 2, 3, 4: the mesh gets those of this order, with straight edges, "
+       "unless "
+       "it has it [keep]",
+       choice_of<int>({{"keep", 0}, {"1", 1}, {"2", 2}, {"3", 3}, {"4", 4}},
+                      [](Arguments& a, int order) { a.new_order = order; })},
   };
 }
 
@@ -410,6 +415,11 @@ std::vector<LineOption> run_options() {
          if (!(seconds > 0)) throw CLI::ValidationError(option, "is a number of seconds above 0");
          a.limits.cpu_seconds = seconds;
        })},
+      {kAll, kGroup, "--within", "FOLDER",
+       "Files are read and written only in this folder and below, links followed, also those that other files name; "
+       "may "
+       "be repeated [anywhere]",
+       each([](Arguments& a, const std::string& typed) { a.limits.folders.push_back(typed); })},
       {kAll, kGroup, "-q,--quiet", "", "Print nothing but errors",
        flag([](Arguments & a) -> auto& { return a.quiet; })},
   };
@@ -428,6 +438,7 @@ const std::vector<OptionGroup>& option_groups() {
       {"Volume", "volume", ""},
       {"Improvement", "improve", ""},
       {"Requirements", "require", "A mesh that does not meet them is not written: status 4"},
+      {"Picture", "picture", ""},
       {"Adaptation", "adapt", "The boundary stays on the smooth surface that it stands for"},
       {"Motion", "move", "In steps as long as elements allow, mended between them"},
       {"Fields", "fields", "What is known on the mesh goes along: at points linear, in elements conservative"},
@@ -448,7 +459,7 @@ const std::vector<LineOption>& line_options() {
   static const std::vector<LineOption> all = [] {
     std::vector<LineOption> list;
     for (const auto& part : {output_options(), job_options(), size_options(), body_options(), image_line_options(),
-                             adapt_options(), field_options(), run_options()})
+                             adapt_options(), field_options(), picture_options(), run_options()})
       list.insert(list.end(), part.begin(), part.end());
     return list;
   }();

@@ -7,7 +7,6 @@
 
 #include "targets.h"
 
-#include <algorithm>
 #include <array>
 
 #include <fmt/core.h>

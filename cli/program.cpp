@@ -7,11 +7,11 @@
 #include "completion.h"
 #include "help.h"
 #include "manual.h"
+#include "mcp_server.h"
 #include "schema.h"
 #include "text.h"
 #include "units.h"
 
-#include <cstdio>
 #include <map>
 
 #include <fmt/core.h>
@@ -27,12 +27,6 @@ std::vector<std::string> names_of_options(const CLI::App& command) {
   std::vector<std::string> names;
   for (const CLI::Option* option : options_of(command))
     for (const std::string& name : option->get_lnames()) names.push_back("--" + name);
-  return names;
-}
-
-std::vector<std::string> names_of_commands(const CLI::App& app) {
-  std::vector<std::string> names;
-  for (const CLI::App* command : commands_of(app)) names.push_back(command->get_name());
   return names;
 }
 
@@ -86,6 +80,7 @@ Program::Program() {
   app_.allow_windows_style_options(false);
   declare_commands();
   declare_helpers();
+  declare_server();
 }
 
 CLI::App* Program::add(const std::string& name, const std::string& help, const std::string& examples,
@@ -175,6 +170,12 @@ const std::vector<CommandRow>& command_rows() {
        "Surface or mesh; or several surfaces, a body each", run_check},
       {"report", "Show a mesh: a web page with it in 3D, and its numbers", "  octafront report part.msh -o part.html\n",
        kMesh, run_report},
+      {"picture", "Draw any input or mesh as a PNG: octafront picture part.msh -o part.png",
+       "  octafront picture part.step -o part.png --names           its faces by name\n"
+       "  octafront picture part.msh -o inside.png --cut y          cut open, coloured by quality\n"
+       "  octafront picture part.msh -o worst.png --worst           the worst element, near by\n"
+       "  octafront picture part.msh -o where.png --highlight patch_1    where a face is\n",
+       "Surface, mesh, CAD file, image or formula; or several files, a body each", run_picture},
   };
   return rows;
 }
@@ -214,6 +215,34 @@ void Program::declare_helpers() {
   add("schema", "Print a JSON Schema of all options, and of the reports that --json writes",
       "  octafront schema > octafront.schema.json\n",
       [this](Session& session) { session.say_exactly(schema_of(app_).dump(2) + "\n"); });
+}
+
+void Program::declare_server() {
+  CLI::App* server = add("serve", "Answer programs, such as agents, until standard input ends: octafront serve --mcp",
+                         "  octafront serve --mcp --folder parts                      files below parts, nowhere else\n"
+                         "  octafront serve --mcp --max-elements 2e6 --seconds 600    what a call may take at most\n",
+                         [this](Session&) { serve(); });
+  server->add_flag("--mcp", speaks_mcp_, "By the Model Context Protocol, over standard input and output")->required();
+  server->add_option("--folder", folders_, "A folder that files may be in, links followed; may be repeated [this one]")
+      ->type_name("FOLDER")
+      ->allow_extra_args(false);
+  server->add_option("--max-elements", server_limits_.elements, "Elements of a mesh at most")
+      ->type_name("N")
+      ->check(CLI::PositiveNumber);
+  server->add_option("--seconds", server_limits_.seconds, "Seconds that a call may take, by the clock")
+      ->type_name("S")
+      ->check(CLI::PositiveNumber);
+  server->add_option("--megabytes", server_limits_.memory_mb, "Memory that a call may take")
+      ->type_name("MB")
+      ->check(CLI::PositiveNumber);
+  server->add_option("--threads", server_limits_.threads, "Threads at most; 0: all")
+      ->type_name("N")
+      ->check(CLI::Range(0, 1024));
+}
+
+void Program::serve() {
+  const Folders folders(folders_.empty() ? std::vector<std::filesystem::path>{"."} : folders_);
+  serve_mcp(app_, folders, server_limits_);
 }
 
 void Program::help(Session& session) const {

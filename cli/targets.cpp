@@ -14,7 +14,6 @@
 #include <algorithm>
 #include <array>
 #include <cstdio>
-#include <cstdlib>
 #include <fstream>
 #include <optional>
 #include <ranges>
@@ -22,7 +21,6 @@
 #include <fmt/core.h>
 #include <unistd.h>
 #ifdef _WIN32
-#include <random>
 #endif
 
 namespace octafront::cli {

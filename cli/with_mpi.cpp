@@ -1,7 +1,7 @@
 #include <octafront/error.h>
 #include <octafront/mpi.h>
 
-#include "ranks.h"
+#include "mpi_session.h"
 
 #include <optional>
 

@@ -1,6 +1,6 @@
 #include <octafront/error.h>
 
-#include "ranks.h"
+#include "mpi_session.h"
 
 #include <fmt/core.h>
 

@@ -4,7 +4,6 @@ table of Ghia, Ghia and Shin, and beside hexahedra far finer than any of them.
 Usage: bench/run.sh cavity [--program OCTAFRONT]
 Writes docs/measured/cavity.md.
 """
-import argparse
 import pathlib
 import re
 import shutil
@@ -16,6 +15,7 @@ import numpy as np
 from bench.judges.foam_mesh import check_mesh, environment, FoamMesh, new_case, verdict, write_dictionary
 from bench.models import layers_bodies as bodies
 from bench.models.solids import grid, merged
+from bench.ours import asked_program
 from bench.pages import tables
 from bench.pages.origin import written_by
 from bench.process import run_measured
@@ -159,11 +159,7 @@ ABOUT = (f"A square of side 1 and a slab of it {THICK:g} thick, its front and ba
 
 
 def main():
-    arguments = argparse.ArgumentParser()
-    arguments.add_argument("build", type=pathlib.Path)
-    arguments.add_argument("--program", type=pathlib.Path)
-    a = arguments.parse_args()
-    program = (a.program or a.build / "cli/octafront").resolve()
+    program = asked_program()
     rows = []
     with tempfile.TemporaryDirectory() as temporary:
         folder = pathlib.Path(temporary)

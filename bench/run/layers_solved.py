@@ -3,7 +3,6 @@
 Usage: bench/run.sh layers_solved [--program OCTAFRONT]
 Writes docs/measured/layers-solved.md.
 """
-import argparse
 import pathlib
 import re
 import subprocess
@@ -13,6 +12,7 @@ import numpy as np
 
 from bench.judges.foam_mesh import check_mesh, environment, FoamMesh, write_dictionary
 from bench.models import layers_bodies as bodies
+from bench.ours import asked_program
 from bench.pages import tables
 from bench.pages.origin import written_by
 from bench.process import run_bounded
@@ -176,11 +176,7 @@ def shown(rows):
 
 
 def main():
-    arguments = argparse.ArgumentParser()
-    arguments.add_argument("build", type=pathlib.Path)
-    arguments.add_argument("--program", type=pathlib.Path)
-    a = arguments.parse_args()
-    program = (a.program or a.build / "cli/octafront").resolve()
+    program = asked_program()
     lines = []
     for size in SIZES:
         layered = solved(program, ["--size", size, *LAYERS])

@@ -18,6 +18,13 @@ constexpr Edge sorted_edge(VertexIndex a, VertexIndex b) {
   return a < b ? Edge{a, b} : Edge{b, a};
 }
 
+/// The corners in ascending order: the same for all triangles on these vertices. A key.
+constexpr Triangle face_key(const Triangle& t) {
+  const VertexIndex low = t[0] < t[1] ? t[0] : t[1], high = t[0] < t[1] ? t[1] : t[0];
+  const VertexIndex lower = high < t[2] ? high : t[2];
+  return {low < t[2] ? low : t[2], low < lower ? lower : low, high < t[2] ? t[2] : high};
+}
+
 /// The regions on the two sides of a triangle: in front, where its normal points, and behind; kNone: outside.
 using Sides = std::array<std::uint32_t, 2>;
 

@@ -27,6 +27,7 @@
 #include <octafront/open_cavity_error.h>
 #include <octafront/option_table.h>
 #include <octafront/options.h>
+#include <octafront/picture.h>
 #include <octafront/poly_mesh.h>
 #include <octafront/quality.h>
 #include <octafront/ranks.h>

@@ -90,8 +90,9 @@ void octafront_surface_set_voxel(octafront_surface* surface, double spacing);
 
 /** Arrays of a mesh: points (F64 x 3), tets (U32 x 4), region (U32 x 1), boundary (U32 x 3), patch, source (U32 x 1),
  * interfaces (U32 x 3), interface_patch (U32 x 1), curve_edges (U32 x 2), curve (U32 x 1), mid_nodes (U32 x 6),
- * wide_cells (U32 x 8: of wedges and pyramids the first tet, the number of tets, six nodes), wide_faces (U32 x 5: of
- * their quadrilaterals the first face, four nodes), split_faces (U32 x 7: three corners behind, their partners in
+ * high_nodes (U32 x 1: of order 3 and 4 the 16 or 31 nodes of each tet behind its corners, as octafront::TetMesh has
+ * them), wide_cells (U32 x 8: of wedges and pyramids the first tet, the number of tets, six nodes), wide_faces (U32 x
+ * 5: of their quadrilaterals the first face, four nodes), split_faces (U32 x 7: three corners behind, their partners in
  * front, the patch in front), opened_contacts (U32 x 3: two patches that lie on each other, and 1 if their triangles
  * are the same, else 0), periods (F64 x 3: of a periodic cell the translations), period_rotations (F64 x 9: the
  * matrices of periods, row by row; none if all are translations), periodic_nodes (U32 x 3: the number of a period, a

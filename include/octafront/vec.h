@@ -62,6 +62,8 @@ struct Box3 {
     lo = min(lo, b.lo);
     hi = max(hi, b.hi);
   }
+  /// Wider by `by` on every side.
+  constexpr Box3 grown(double by) const { return {lo - Vec3{by, by, by}, hi + Vec3{by, by, by}}; }
   constexpr Vec3 center() const { return (lo + hi) * 0.5; }
   constexpr Vec3 extent() const { return hi - lo; }
   double diagonal() const { return empty() ? 0 : length(hi - lo); }

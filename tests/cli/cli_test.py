@@ -361,6 +361,38 @@ class CommandLine(unittest.TestCase):
         self.assertIn("E 2.1e+11, nu 0.3, density 7850 stand there, which is steel in N, m and s", told)
         self.assertIn('2700 of "plate"', told)
 
+    def test_orders_3_and_4_are_the_same_in_each_format(self):
+        part, report = SAMPLES / "gear.obj", self.dir / "report.json"
+        for order in (3, 4):
+            files = [self.dir / f"part{order}{end}" for end in (".msh", ".vtu", "_text.msh", "_text.vtu")]
+            self.run_cli("mesh", part, "--size", 12, "--order", order, "-o", files[0], "-o", files[1], "--json", report)
+            made = json.loads(report.read_text())
+            self.run_cli("convert", files[1], "-o", files[2], "--ascii", "--format", "msh22")
+            self.run_cli("convert", files[0], "-o", files[3], "--ascii")
+            self.assertIn(f" {29 if order == 3 else 30} ", files[2].read_text())
+            told = set()
+            for file in files:
+                said = self.run_cli("check", file).stdout
+                self.assertIn(f"tetrahedra of order {order}", said)
+                told.update(re.findall("order . every Jacobian proven positive; the least scaled one is ([0-9.]+)|$", said))
+                self.run_cli("info", file, "--json", report)
+                found = json.loads(report.read_text())
+                self.assertEqual(found["order"], order)
+                self.assertAlmostEqual(found["volume"] / made["volume"], 1, 6)
+            self.assertEqual(len(told - {""}), 1, told)
+            self.assertIn("holds no elements of order", self.run_cli("convert", files[0], "-o", self.dir / "linear.inp").stdout)
+            back = self.run_cli("convert", files[0], "-o", self.dir / "back.vtu", "--order", "1").stdout
+            self.assertIn("written", back)
+            # One node of one element pulled away: found, with its element.
+            lines = files[2].read_text().split("\n")
+            at = lines.index("$Nodes") + 1 + int(lines[lines.index("$Nodes") + 1])
+            number, x, y, z = lines[at].split()
+            lines[at] = f"{number} {float(x) + 50} {y} {z}"
+            files[2].write_text("\n".join(lines))
+            self.assertIn("is not positive everywhere", self.run_cli("check", files[2], status=3).stderr)
+        refused = self.run_cli("mesh", part, "-o", self.dir / "a.vtu", "--order", 3, "--layers", 2, "--total", 1, status=2)
+        self.assertIn("--order 3 and 4 go with neither --layers nor --periodic yet", refused.stderr)
+
     def test_contacts_are_shared_split_or_separate(self):
         self.needs_cad()
         mesh, report = self.dir / "a.vtu", self.dir / "a.json"

@@ -90,6 +90,7 @@ class Help(unittest.TestCase):
                               ("head_ct.nii.gz", "head.nii.gz")):
             shutil.copy(SAMPLES / sample, self.dir / image)
         shutil.copy(SAMPLES / "bracket.step", self.dir / "part.step")
+        (self.dir / "parts").mkdir()
         reads_cad = (pathlib.Path(OCTAFRONT).parent / "../cad/octafront-cad").exists()
         self.run_cli("surface", SAMPLES / "gear.obj", "--keep-surface", "-o", self.dir / "bolt.stl")
         self.run_cli("mesh", self.dir / "part.stl", "-o", self.dir / "in.msh", "--size", 1.5)
@@ -120,7 +121,7 @@ class Help(unittest.TestCase):
                 if not shell.startswith("octafront") or command in ("help", "completion") or (".step" in shell and not reads_cad):
                     continue
                 done = subprocess.run(["bash", "-c", f'octafront() {{ "{OCTAFRONT}" "$@"; }}; set -o pipefail; {shell}'],
-                                      cwd=self.dir, capture_output=True, timeout=120)
+                                      cwd=self.dir, stdin=subprocess.DEVNULL, capture_output=True, timeout=120)
                 self.assertEqual(done.returncode, 0, f"{shell}: {done.stderr}")
 
     def test_manual_has_every_option(self):

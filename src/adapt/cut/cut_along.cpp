@@ -1,5 +1,6 @@
 #include <octafront/error.h>
 #include <octafront/level_set.h>
+#include <octafront/second_order.h>
 #include <octafront/validity.h>
 
 #include "adapt/cut/cutter.h"
@@ -70,15 +71,9 @@ CutState state_of(const TetMesh& linear, std::span<const LevelSet> level_sets) {
   return state;
 }
 
-/// Corners come first in a mesh of second order.
 TetMesh linear_part(const TetMesh& mesh) {
   TetMesh linear = mesh;
-  if (!mesh.is_second_order()) return linear;
-  VertexIndex corners = 0;
-  for (const Tet& t : mesh.tets) corners = std::max(corners, *std::max_element(t.begin(), t.end()) + 1);
-  linear.mid_nodes.clear(), linear.points.resize(corners);
-  for (NamedSet& set : linear.sets)
-    if (set.kind == NamedSet::Kind::kNodes) std::erase_if(set.members, [&](std::uint32_t v) { return v >= corners; });
+  make_linear(linear);
   return linear;
 }
 

@@ -4,7 +4,6 @@
 #include "base/geometry/measures.h"
 
 #include <algorithm>
-#include <array>
 #include <cmath>
 
 namespace octafront::adapt {

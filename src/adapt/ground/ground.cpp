@@ -4,7 +4,6 @@
 #include "base/core/groups.h"
 #include "base/core/parallel.h"
 #include "base/geometry/nearest_that.h"
-#include "base/mesh/adjacency.h"
 
 #include <algorithm>
 #include <cmath>

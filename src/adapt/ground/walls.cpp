@@ -1,5 +1,4 @@
 #include "adapt/ground/ground.h"
-#include "base/mesh/adjacency.h"
 
 #include <utility>
 

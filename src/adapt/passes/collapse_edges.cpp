@@ -5,7 +5,6 @@
 #include "base/mesh/link_condition.h"
 
 #include <algorithm>
-#include <cmath>
 
 namespace octafront::adapt {
 namespace {

@@ -1,7 +1,5 @@
 #include "adapt/passes/piece.h"
 
-#include "base/core/validate.h"
-
 #include <algorithm>
 #include <bit>
 #include <cmath>

@@ -88,6 +88,56 @@ class WallCheck {
   std::vector<Vec3> seen_;
 };
 
+/// The unit tensor, which costs nothing.
+struct RoundMetric {
+  static Vec3 times(Vec3 e) { return e; }
+  static double squared(Vec3 e) { return dot(e, e); }
+  explicit operator Metric() const { return {}; }
+};
+
+/// Slope and curvature of the lack as the vertex moves. With S the sum of squared edges and D the six volumes, both
+/// in the metric, 1 / score is S^(3/2) / D times a constant; D is linear.
+struct Slope {
+  double pull_of_size;
+  Vec3 gradient{};
+  Metric hessian{0, 0, 0, 0, 0, 0};
+
+  /// `M`: Metric, or RoundMetric.
+  template <class M>
+  void add(const M& m, double density, double wanted, Vec3 x, const std::array<Vec3, 3>& face) {
+    const auto& [a, b, c] = face;
+    const double sum =
+        m.squared(x - a) + m.squared(x - b) + m.squared(x - c) + m.squared(b - a) + m.squared(c - a) + m.squared(c - b);
+    const Vec3 n = -density * double_area_normal(a, b, c), g = 2.0 * m.times(3.0 * x - (a + b + c));
+    const double d = 1 / dot(n, x - a), root = std::sqrt(sum), f = sum * root * d;
+    // f' = f (3/2 g / S - n / D), f'' = f (9 M / S + 3/4 g g' / S^2 - 3/2 (g n' + n g') / (S D) + 2 n n' / D^2).
+    const Vec3 u = (1 / sum) * g, w = d * n;
+    // Of D + 1 / D, with D = 1 as is wanted: f' = (D - 1 / D) w, f'' = 2 / D w w'.
+    const double size = kSqrt2 * wanted / d, pull = pull_of_size * kScale;
+    gradient += f * (1.5 * u - w) + pull * (size - 1 / size) * w;
+    const double ww = 2 * (f + pull / size);
+    const auto entry = [&](int i, int j) {
+      return f * (0.75 * u[i] * u[j] - 1.5 * (u[i] * w[j] + w[i] * u[j])) + ww * w[i] * w[j];
+    };
+    hessian = hessian + (9 * f / sum) * Metric(m) +
+              Metric{entry(0, 0), entry(0, 1), entry(0, 2), entry(1, 1), entry(1, 2), entry(2, 2)};
+  }
+};
+
+Vec3 step_along(const Slope& s, Vec3 d) {
+  const double curvature = s.hessian.squared(d);
+  return curvature > 0 ? -dot(s.gradient, d) / curvature * d : Vec3{};
+}
+
+Vec3 step_in_plane(const Slope& s, Vec3 n) {
+  const Vec3 e = std::abs(n.x) < 0.6 ? Vec3{1, 0, 0} : Vec3{0, 1, 0};
+  const Vec3 u = normalized(e - dot(e, n) * n), w = cross(n, u);
+  const double uu = s.hessian.squared(u), ww = s.hessian.squared(w), uw = dot(u, s.hessian.times(w));
+  const double gu = dot(s.gradient, u), gw = dot(s.gradient, w), det = uu * ww - uw * uw;
+  if (!(uu > 0 && det > 0)) return uu + ww > 0 ? -1 / (uu + ww) * (gu * u + gw * w) : Vec3{};
+  return -1 / det * ((ww * gu - uw * gw) * u + (uu * gw - uw * gu) * w);
+}
+
 class VertexMover {
  public:
   VertexMover(Piece& piece, const Guide& guide) : piece_(piece), guide_(guide) {}
@@ -329,41 +379,6 @@ class VertexMover {
     return true;
   }
 
-  /// The unit tensor, which costs nothing.
-  struct RoundMetric {
-    static Vec3 times(Vec3 e) { return e; }
-    static double squared(Vec3 e) { return dot(e, e); }
-    explicit operator Metric() const { return {}; }
-  };
-  /// Slope and curvature of the lack as the vertex moves. With S the sum of squared edges and D the six volumes, both
-  /// in the metric, 1 / score is S^(3/2) / D times a constant; D is linear.
-  struct Slope {
-    double pull_of_size;
-    Vec3 gradient{};
-    Metric hessian{0, 0, 0, 0, 0, 0};
-
-    /// `M`: Metric, or RoundMetric.
-    template <class M>
-    void add(const M& m, double density, double wanted, Vec3 x, const std::array<Vec3, 3>& face) {
-      const auto& [a, b, c] = face;
-      const double sum = m.squared(x - a) + m.squared(x - b) + m.squared(x - c) + m.squared(b - a) + m.squared(c - a) +
-                         m.squared(c - b);
-      const Vec3 n = -density * double_area_normal(a, b, c), g = 2.0 * m.times(3.0 * x - (a + b + c));
-      const double d = 1 / dot(n, x - a), root = std::sqrt(sum), f = sum * root * d;
-      // f' = f (3/2 g / S - n / D), f'' = f (9 M / S + 3/4 g g' / S^2 - 3/2 (g n' + n g') / (S D) + 2 n n' / D^2).
-      const Vec3 u = (1 / sum) * g, w = d * n;
-      // Of D + 1 / D, with D = 1 as is wanted: f' = (D - 1 / D) w, f'' = 2 / D w w'.
-      const double size = kSqrt2 * wanted / d, pull = pull_of_size * kScale;
-      gradient += f * (1.5 * u - w) + pull * (size - 1 / size) * w;
-      const double ww = 2 * (f + pull / size);
-      const auto entry = [&](int i, int j) {
-        return f * (0.75 * u[i] * u[j] - 1.5 * (u[i] * w[j] + w[i] * u[j])) + ww * w[i] * w[j];
-      };
-      hessian = hessian + (9 * f / sum) * Metric(m) +
-                Metric{entry(0, 0), entry(0, 1), entry(0, 2), entry(1, 1), entry(1, 2), entry(2, 2)};
-    }
-  };
-
   Slope slope_at(VertexIndex v, const Vertex& from) const {
     Slope slope{piece_.isotropic ? kPullOfSize : kPullInMetric};
     for (std::size_t k = 0; k < cells_.size(); ++k) {
@@ -387,18 +402,6 @@ class VertexMover {
     const Metric& h = slope.hessian;
     if (!(h.xx > 0 && h.xx * h.yy > h.xy * h.xy && h.determinant() > 0)) return -1.0 / (h.xx + h.yy + h.zz) * g;
     return -inverse(h).times(g);
-  }
-  static Vec3 step_along(const Slope& s, Vec3 d) {
-    const double curvature = s.hessian.squared(d);
-    return curvature > 0 ? -dot(s.gradient, d) / curvature * d : Vec3{};
-  }
-  static Vec3 step_in_plane(const Slope& s, Vec3 n) {
-    const Vec3 e = std::abs(n.x) < 0.6 ? Vec3{1, 0, 0} : Vec3{0, 1, 0};
-    const Vec3 u = normalized(e - dot(e, n) * n), w = cross(n, u);
-    const double uu = s.hessian.squared(u), ww = s.hessian.squared(w), uw = dot(u, s.hessian.times(w));
-    const double gu = dot(s.gradient, u), gw = dot(s.gradient, w), det = uu * ww - uw * uw;
-    if (!(uu > 0 && det > 0)) return uu + ww > 0 ? -1 / (uu + ww) * (gu * u + gw * w) : Vec3{};
-    return -1 / det * ((ww * gu - uw * gw) * u + (uu * gw - uw * gu) * w);
   }
 
   /// The walls at the vertex, and its line; false if it is not where it can move along them.

@@ -10,7 +10,6 @@
 #include "base/shared/blocks.h"
 
 #include <algorithm>
-#include <cmath>
 #include <map>
 #include <utility>
 

@@ -7,7 +7,6 @@
 #include "base/mesh/face_table.h"
 
 #include <algorithm>
-#include <cmath>
 
 namespace octafront::adapt {
 namespace {

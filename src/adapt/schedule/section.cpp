@@ -6,7 +6,6 @@
 #include "base/mesh/renumber.h"
 
 #include <algorithm>
-#include <array>
 #include <numeric>
 #include <type_traits>
 

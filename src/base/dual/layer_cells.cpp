@@ -1,7 +1,6 @@
 #include "base/dual/layer_cells.h"
 
 #include <algorithm>
-#include <array>
 
 namespace octafront::dual {
 namespace {

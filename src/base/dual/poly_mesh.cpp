@@ -7,7 +7,6 @@
 #include "base/dual/poly_measures.h"
 
 #include <algorithm>
-#include <array>
 
 #include <fmt/core.h>
 

@@ -7,7 +7,6 @@
 #include "base/mesh/adjacency.h"
 
 #include <algorithm>
-#include <array>
 #include <cstdint>
 #include <span>
 #include <utility>

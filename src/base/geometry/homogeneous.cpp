@@ -1,7 +1,5 @@
 #include "base/geometry/homogeneous.h"
 
-#include <utility>
-
 namespace octafront::exact {
 namespace {
 

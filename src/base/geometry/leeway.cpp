@@ -3,7 +3,6 @@
 #include "base/geometry/measures.h"
 
 #include <algorithm>
-#include <cmath>
 
 namespace octafront {
 

@@ -162,9 +162,7 @@ View view_from(VertexIndex center, std::span<const Vec3> points, const Triangle&
   const double bulge = squared_chord / 4 + kRoundingOfView;
   box.add(u[0]);
   box.add(u[1]);
-  box.lo -= Vec3{bulge, bulge, bulge};
-  box.hi += Vec3{bulge, bulge, bulge};
-  return {box, number};
+  return {box.grown(bulge), number};
 }
 
 // Triangles with a common corner that meet elsewhere are seen in a common direction from there. A sweep along the axis

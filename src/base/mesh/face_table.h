@@ -16,12 +16,6 @@ inline Triangle face_of(const Tet& t, int i) {
   return {t[f[0]], t[f[1]], t[f[2]]};
 }
 
-/// The corners of a face in ascending order: the same for all faces on these vertices. A key of FlatMap.
-inline Triangle face_key(const Triangle& t) {
-  const VertexIndex low = std::min(t[0], t[1]), high = std::max(t[0], t[1]);
-  return {std::min(low, t[2]), std::max(low, std::min(high, t[2])), std::max(high, t[2])};
-}
-
 /// Whether the corners are an even permutation of the ascending ones. Faces on the same vertices have the same side in
 /// front of them if both are even or both odd.
 inline bool is_even(const Triangle& t) {

@@ -6,7 +6,6 @@
 #include "base/core/validate.h"
 #include "base/mesh/surface_topology.h"
 
-#include <algorithm>
 #include <string>
 
 namespace octafront {

@@ -138,10 +138,10 @@ struct Part {
 /// Of n tets; tet_at(i) is the number of the i-th, which is first_tet + that in the whole.
 template <class TetAt>
 QualitySum summed(const TetMesh& mesh, std::size_t n, std::uint64_t first_tet, const TetAt& tet_at) {
-  constexpr std::size_t kBlock = 8192;
-  std::vector<Part> parts((n + kBlock - 1) / kBlock);
+  constexpr std::size_t kAtOnce = 8192;
+  std::vector<Part> parts((n + kAtOnce - 1) / kAtOnce);
   parallel_for(parts.size(), [&](std::size_t block) {
-    for_each_quality(mesh, block * kBlock, std::min(n, (block + 1) * kBlock), tet_at,
+    for_each_quality(mesh, block * kAtOnce, std::min(n, (block + 1) * kAtOnce), tet_at,
                      [&](const QualityBatch& batch, int i, TetIndex t) {
                        parts[block].add(batch, i, static_cast<TetIndex>(first_tet + t));
                      });

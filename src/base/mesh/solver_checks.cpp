@@ -7,7 +7,6 @@
 #include "base/mesh/quadratic_nodes.h"
 
 #include <algorithm>
-#include <cmath>
 #include <limits>
 #include <numbers>
 #include <span>

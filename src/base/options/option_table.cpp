@@ -341,11 +341,13 @@ std::vector<Row<Options>> improve_rows() {
           [](auto& o) -> auto& { return o.improve.seconds; }),
       row(
           [&] {
-            About order = of("order",
-                             "2: elements of second order, with mid-side nodes; those of the boundary on the smooth "
-                             "surface that the input stands for, every element proven valid; 1: linear ones",
-                             "Elements");
-            order.choices = {"1", "2"};
+            About order =
+                of("order",
+                   "2, 3, 4: elements of this order, with nodes on their edges, faces and inside; those of the "
+                   "boundary on the smooth surface that the input stands for, every element proven valid; "
+                   "1: linear ones",
+                   "Elements");
+            order.choices = {"1", "2", "3", "4"};
             return order.common("2: elements of second order, curved to the surface");
           }(),
           [](auto& o) -> auto& { return o.order; }),

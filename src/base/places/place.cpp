@@ -5,7 +5,6 @@
 #include "base/places/places.h"
 
 #include <algorithm>
-#include <charconv>
 #include <cmath>
 
 #include <fmt/core.h>

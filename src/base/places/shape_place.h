@@ -3,7 +3,6 @@
 // Places by what something is like, "largest plane at z min", as far as the words go: what is meant by them is for who
 // knows the geometry (base/geometry/true_geometry.h).
 
-#include <cstdint>
 #include <optional>
 #include <string>
 

@@ -2,9 +2,6 @@
 
 #include "cad/model/cad_model.h"
 
-#include <array>
-#include <cstddef>
-
 namespace octafront::cad {
 
 /// A point of a curve, and its first two derivatives by the parameter.

@@ -6,8 +6,6 @@
 #include <array>
 #include <cstdint>
 #include <cstring>
-#include <string>
-#include <string_view>
 #include <vector>
 
 namespace octafront::c_api {

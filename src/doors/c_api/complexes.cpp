@@ -1,7 +1,6 @@
 // From triangles as people have them to what can be meshed: complexes of walls and of bodies, and mending.
 
 #include <octafront/complex.h>
-#include <octafront/error.h>
 #include <octafront/mend.h>
 #include <octafront/repair.h>
 

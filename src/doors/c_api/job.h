@@ -1,7 +1,6 @@
 #pragma once
 
 #include <octafront/adapt.h>
-#include <octafront/error.h>
 #include <octafront/octafront_c.h>
 #include <octafront/run_context.h>
 

@@ -109,7 +109,7 @@ void check(octafront_job& job, const TetMesh& mesh, const std::string& solver) {
   const auto defect = first_defect(mesh, job.context());
   job.report["valid"] = !defect;
   job.report["defect"] = defect ? Json(*defect) : Json(nullptr);
-  if (mesh.is_second_order()) job.report["second_order"] = Json::parse(to_json(check_jacobians(mesh, job.context())));
+  if (mesh.order() > 1) job.report["second_order"] = Json::parse(to_json(check_jacobians(mesh, job.context())));
   Json groups = Json::array();
   for (const GroupInfo& g : groups_of(mesh))
     groups.push_back({{"origin", g.origin}, {"name", g.name}, {"size", g.size}});

@@ -3,7 +3,6 @@
 #include <octafront/image_surface.h>
 #include <octafront/io.h>
 
-#include "base/core/doubles.h"
 #include "base/core/wording.h"
 #include "base/geometry/measures.h"
 #include "doors/intake/cell.h"

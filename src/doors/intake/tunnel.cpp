@@ -3,7 +3,6 @@
 
 #include "base/core/disjoint_sets.h"
 #include "base/core/wording.h"
-#include "base/geometry/measures.h"
 #include "base/geometry/winding_number.h"
 #include "doors/intake/cell.h"
 #include "doors/intake/intake.h"

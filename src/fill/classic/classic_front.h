@@ -6,7 +6,6 @@
 
 #include "fill/classic/alternating_tree.h"
 
-#include <array>
 #include <cstdint>
 #include <optional>
 #include <string>

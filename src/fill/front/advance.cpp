@@ -45,7 +45,7 @@ void unpack_front(BlockResult& r, Unpacker& from) {
 }
 
 /// Gives the vertices of a block the front's numbers; its own ones begin at `first_own`.
-void renumber(BlockResult& r, VertexIndex first_own) {
+void renumber_block(BlockResult& r, VertexIndex first_own) {
   const auto own = static_cast<VertexIndex>(r.found.size());
   const auto take = [&](auto& corners) {
     for (VertexIndex& v : corners) v = v < own ? r.found[v] : first_own + (v - own);
@@ -139,7 +139,7 @@ class Phases {
     const std::vector<std::size_t> first_point = number_points(results, comm, shares, deferred);
     parallel_for(shares.end(comm.rank()) - shares.begin(comm.rank()), [&](std::size_t i) {
       const std::size_t b = shares.begin(comm.rank()) + i;
-      renumber(results[b], static_cast<VertexIndex>(first_point[b]));
+      renumber_block(results[b], static_cast<VertexIndex>(first_point[b]));
     });
     gather_results(comm, shares, "front", results, pack_front, unpack_front);
     put(results, first_point, comm, shares);

@@ -6,7 +6,6 @@
 #include "fill/front/front.h"
 
 #include <algorithm>
-#include <limits>
 #include <utility>
 
 namespace octafront {

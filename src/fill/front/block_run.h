@@ -4,7 +4,6 @@
 #include "fill/front/front_task.h"
 #include "fill/front/partition.h"
 
-#include <cstdint>
 #include <limits>
 #include <vector>
 

@@ -1,6 +1,5 @@
 #include "fill/front/ladder.h"
 
-#include <octafront/error.h>
 #include <octafront/open_cavity_error.h>
 
 #include "base/core/stage_timer.h"
@@ -56,7 +55,7 @@ std::vector<Box3> surroundings(const std::vector<Vec3>& points, const Cavities& 
     for (const Wall& w : cavities.walls(c))
       for (const VertexIndex v : w) box.add(points[v]);
     const double margin = 2 * box.diagonal();
-    boxes.push_back({box.lo - Vec3{margin, margin, margin}, box.hi + Vec3{margin, margin, margin}});
+    boxes.push_back(box.grown(margin));
   }
   return boxes;
 }

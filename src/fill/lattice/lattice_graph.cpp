@@ -4,7 +4,6 @@
 #include "base/core/parallel.h"
 
 #include <algorithm>
-#include <cmath>
 #include <utility>
 
 namespace octafront {

@@ -9,7 +9,6 @@
 #include "base/mesh/edge_table.h"
 
 #include <algorithm>
-#include <cmath>
 #include <tuple>
 
 #include <fmt/core.h>

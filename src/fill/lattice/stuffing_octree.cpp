@@ -23,7 +23,7 @@ std::vector<Box3> reach_of_triangles(const SurfaceMesh& surface, const SizeField
       size = std::max(size, sizes.at(surface.points[v]));
     }
     const double leaf = kLatticeTooLong * kLatticeSidePerEdge * size;
-    reach.push_back({box.lo - Vec3{leaf, leaf, leaf}, box.hi + Vec3{leaf, leaf, leaf}});
+    reach.push_back(box.grown(leaf));
   }
   return reach;
 }

@@ -2,7 +2,6 @@
 
 #include "fill/recovery/segment_walk.h"
 
-#include <algorithm>
 #include <limits>
 
 namespace octafront::recovery {

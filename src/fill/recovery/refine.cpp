@@ -6,9 +6,7 @@
 #include "base/mesh/tet_complex.h"
 
 #include <algorithm>
-#include <cmath>
 #include <deque>
-#include <limits>
 
 namespace octafront {
 

@@ -3,7 +3,6 @@
 #include "base/mesh/tet_complex.h"
 #include "fill/recovery/exact_points.h"
 
-#include <optional>
 #include <vector>
 
 namespace octafront::recovery {

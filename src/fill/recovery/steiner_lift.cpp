@@ -3,7 +3,6 @@
 #include <octafront/quality.h>
 
 #include <algorithm>
-#include <cmath>
 
 namespace octafront::recovery {
 

@@ -2,7 +2,6 @@
 
 #include <octafront/run_context.h>
 
-#include <array>
 #include <cstdint>
 #include <filesystem>
 #include <functional>

@@ -1,6 +1,7 @@
 #include "formats/containers/input.h"
 
 #include <octafront/error.h>
+#include <octafront/limits.h>
 
 #include "base/core/files_of_windows.h"
 
@@ -132,6 +133,7 @@ void ReadingProgress::tell(const char* at) {
 LoadedFile::LoadedFile(const std::filesystem::path& file, const RunContext& context) {
   input_.name = file.string();
   input_.context = context;
+  require_in_folders(input_.name);
   // A pipe that nobody writes to would block the opening, where nothing could cancel it.
   const Descriptor fd(::open(file.c_str(), O_RDONLY | O_CLOEXEC | O_NONBLOCK));
   if (fd.get() < 0) {
@@ -168,6 +170,12 @@ std::string in_quotes(std::string_view text) {
   }
   if (text.size() > kMost) out += "...";
   return out + '"';
+}
+
+std::string names_in_quotes(std::span<const std::string> names) {
+  std::string list;
+  for (const std::string& name : names) list += (list.empty() ? "" : ", ") + in_quotes(name);
+  return list;
 }
 
 }  // namespace octafront::io

@@ -10,6 +10,7 @@
 #include <cstddef>
 #include <filesystem>
 #include <memory>
+#include <span>
 #include <string>
 #include <string_view>
 
@@ -73,5 +74,7 @@ class LoadedFile {
 
 /// `text` in quotes for a message: cut to some forty characters, unprintable bytes as \xNN.
 std::string in_quotes(std::string_view text);
+/// The names, each in quotes, with commas between them.
+std::string names_in_quotes(std::span<const std::string> names);
 
 }  // namespace octafront::io

@@ -1,6 +1,5 @@
 #include "formats/containers/named_file.h"
 
-#include <algorithm>
 #include <system_error>
 
 #include <fmt/core.h>

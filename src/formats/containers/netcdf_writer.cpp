@@ -1,7 +1,7 @@
 #include "formats/containers/netcdf_writer.h"
 
 #include <algorithm>
-#include <bit>
+#include <array>
 #include <cstring>
 
 namespace octafront::io {

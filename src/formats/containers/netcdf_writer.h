@@ -2,7 +2,6 @@
 
 #include "formats/containers/atomic_file.h"
 
-#include <array>
 #include <cstdint>
 #include <functional>
 #include <string>

@@ -1,4 +1,3 @@
-#include <octafront/error.h>
 #include <octafront/io.h>
 
 #include "formats/files/formats.h"

@@ -50,7 +50,7 @@ std::string names_with_polyhedra() {
 }
 
 /// Whether the mesh is written in parts, by options or because the format knows nothing else.
-bool in_parts(const io::Format& format, const WriteOptions& options) {
+bool goes_in_parts(const io::Format& format, const WriteOptions& options) {
   return options.parts > 0 || (format.write_mesh == nullptr && format.write_parts != nullptr);
 }
 
@@ -173,7 +173,7 @@ void check_mesh_target(const std::string& file, const WriteOptions& options) {
   const io::Format& format = mesh_format(file, options.format);
   check_options(format, options);
   io::check_foam_case(file, options);
-  if (in_parts(format, options) && format.check_parts != nullptr)
+  if (goes_in_parts(format, options) && format.check_parts != nullptr)
     return format.check_parts(file, std::max(options.parts, 1U));
   format.is_folder ? io::check_folder_writable(file) : io::check_writable(file);
 }
@@ -202,15 +202,18 @@ std::vector<std::string> write_mesh(const std::string& file, const TetMesh& give
   const io::JobMesh for_job = options.job ? io::mesh_for_job(given_mesh, *options.job) : io::JobMesh{};
   const TetMesh& mesh = for_job.changed ? *for_job.changed : given_mesh;
   const io::WithoutDiagonals without = is_curved ? io::without_diagonals(mesh) : io::WithoutDiagonals{};
-  const io::MeshParts parts(without.mesh ? *without.mesh : mesh, {.mid_nodes = !holds.second_order,
-                                                                  .faces = options.cells_only,
-                                                                  .wide_cells = !is_wide,
-                                                                  .last_points = without.diagonals});
-  if (in_parts(format, options) && mesh.tets.empty())
+  const io::MeshParts parts(without.mesh ? *without.mesh : mesh,
+                            {.mid_nodes = mesh.high_order > 0 ? !holds.high_order : !holds.second_order,
+                             .faces = options.cells_only,
+                             .wide_cells = !is_wide,
+                             .last_points = without.diagonals});
+  if (goes_in_parts(format, options) && mesh.tets.empty())
     throw OptionError(fmt::format("{}: a mesh without volume elements is not written in parts", file));
+  if (goes_in_parts(format, options) && mesh.high_order > 0)
+    throw OptionError(fmt::format("{}: a mesh of order {} is not written in parts", file, mesh.order()));
   if (options.polyhedral && mesh.tets.empty())
     throw OptionError(fmt::format("{}: a mesh without volume elements has no polyhedra", file));
-  const bool wedges_in_parts = in_parts(format, options) && !parts.wide_cells().empty();
+  const bool wedges_in_parts = goes_in_parts(format, options) && !parts.wide_cells().empty();
   const std::size_t given = fields.size();
   std::vector<MeshField> fitting;
   if (without.mesh || wedges_in_parts || options.polyhedral) {
@@ -235,7 +238,7 @@ std::vector<std::string> write_mesh(const std::string& file, const TetMesh& give
       out.note(fmt::format("{} is given no cohesive elements and beams: they are for Abaqus", format.info.title));
     if (options.polyhedral) {
       format.write_polyhedra(out, parts, dual_mesh(parts.mesh(), context));
-    } else if (in_parts(format, options)) {
+    } else if (goes_in_parts(format, options)) {
       io::Pieces pieces(parts, io::divide(parts.mesh(), std::max(options.parts, 1U), options.partitioner), fields);
       format.write_parts(out, pieces);
     } else {

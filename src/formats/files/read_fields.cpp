@@ -1,6 +1,5 @@
 // Fields of the file that a mesh was read from.
 
-#include <octafront/error.h>
 #include <octafront/field_files.h>
 
 #include "formats/containers/input.h"

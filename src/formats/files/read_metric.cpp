@@ -1,7 +1,6 @@
 // Metrics on meshes: MEDIT's .sol and .solb, whose mesh stands in another file, and tensors at the points of VTU and
 // VTK.
 
-#include <octafront/error.h>
 #include <octafront/io.h>
 
 #include "formats/containers/input.h"
@@ -160,22 +159,16 @@ MetricMesh metric_of_solution(const io::Input& input, const std::string& mesh_fi
   return mesh;
 }
 
-std::string names_in_quotes(const std::vector<std::string>& names) {
-  std::string list;
-  for (const std::string& name : names) list += (list.empty() ? "" : ", ") + io::in_quotes(name);
-  return list;
-}
-
 [[noreturn]] void refuse_tensors(const io::Input& input, const io::RawMesh::Field& field) {
   if (field.names.empty())
     input.fail(
         "has no tensors of 6 or 9 numbers at its points; of VTU and VTK such are read, and MEDIT's .sol (a field of "
         "sizes must be named, as FILE:FIELD)");
   if (input.field->empty())
-    input.fail(fmt::format("has the fields {}: say which one is the metric, as {}:{}", names_in_quotes(field.names),
+    input.fail(fmt::format("has the fields {}: say which one is the metric, as {}:{}", io::names_in_quotes(field.names),
                            input.name, field.names.front()));
   input.fail(fmt::format("has no field {} of 1, 6 or 9 numbers at all its points; there are {}",
-                         io::in_quotes(*input.field), names_in_quotes(field.names)));
+                         io::in_quotes(*input.field), io::names_in_quotes(field.names)));
 }
 
 /// Of 6 numbers VTK says xx yy zz xy yz xz, of 9 rows.
@@ -236,7 +229,7 @@ std::vector<double> read_point_values(const std::string& file, const std::string
   if (raw.field.at_points.size() != raw.points.size()) {
     asked.fail(raw.field.names.empty() ? std::string("has no field of single numbers at its points")
                                        : fmt::format("has no field {} of single numbers at its points; there are {}",
-                                                     io::in_quotes(field), names_in_quotes(raw.field.names)));
+                                                     io::in_quotes(field), io::names_in_quotes(raw.field.names)));
   }
   if (raw.points != mesh.points)
     asked.fail(

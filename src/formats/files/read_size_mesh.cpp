@@ -1,6 +1,5 @@
 // Meshes with a field of sizes, in the formats whose readers know of fields, and in files beside those of the others.
 
-#include <octafront/error.h>
 #include <octafront/io.h>
 
 #include "formats/containers/input.h"
@@ -91,12 +90,6 @@ void read_beside(const io::Input& input, io::RawMesh& raw) {
   is_medit ? MeditSolution(input, file.input(), raw).read() : read_mtr(input, file.input(), raw);
 }
 
-std::string listed(const std::vector<std::string>& names) {
-  std::string list;
-  for (const std::string& name : names) list += (list.empty() ? "" : ", ") + io::in_quotes(name);
-  return list;
-}
-
 /// Sizes that are above 0; `what` has them.
 const std::vector<double>& checked(const io::Input& input, const std::vector<double>& sizes, const char* what) {
   for (std::size_t i = 0; i < sizes.size(); ++i)
@@ -115,10 +108,10 @@ const std::vector<double>& checked(const io::Input& input, const std::vector<dou
         "fields",
         wanted.empty() ? "" : ", not " + io::in_quotes(wanted), raw.format));
   if (wanted.empty())
-    input.fail(fmt::format("has the fields {}: say which one has the sizes, as {}:{}", listed(names), input.name,
-                           names.front()));
+    input.fail(fmt::format("has the fields {}: say which one has the sizes, as {}:{}", io::names_in_quotes(names),
+                           input.name, names.front()));
   input.fail(fmt::format("has no field {} of single numbers for all its points or elements; there are {}",
-                         io::in_quotes(wanted), listed(names)));
+                         io::in_quotes(wanted), io::names_in_quotes(names)));
 }
 
 SizeMesh size_mesh_of(const io::Input& input, io::RawMesh raw) {

@@ -2,8 +2,6 @@
 #include "formats/containers/scanner.h"
 #include "formats/files/formats.h"
 
-#include <utility>
-
 #include <fmt/core.h>
 
 namespace octafront::io {

@@ -2,8 +2,6 @@
 
 // The readers of sizes, from bytes in memory. All throw InputError.
 
-#include <octafront/io.h>
-
 #include "formats/containers/input.h"
 #include "formats/parts/raw_mesh.h"
 

@@ -3,7 +3,6 @@
 #include <octafront/error.h>
 #include <octafront/units.h>
 
-#include "base/core/wording.h"
 #include "base/places/places.h"
 
 #include <algorithm>

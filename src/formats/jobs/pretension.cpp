@@ -5,7 +5,6 @@
 #include "formats/jobs/job_plan.h"
 
 #include <algorithm>
-#include <cmath>
 #include <functional>
 
 #include <fmt/core.h>

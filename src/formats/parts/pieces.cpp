@@ -7,7 +7,6 @@
 #include "base/labels/labels.h"
 
 #include <algorithm>
-#include <array>
 
 #include <fmt/core.h>
 

@@ -35,11 +35,6 @@ Edge diagonal_of(const Quad& q) {
   return {std::min(q[k], q[k + 2]), std::max(q[k], q[k + 2])};
 }
 
-Triangle sorted_corners(const Triangle& t) {
-  const VertexIndex low = std::min({t[0], t[1], t[2]}), high = std::max({t[0], t[1], t[2]});
-  return {low, t[0] ^ t[1] ^ t[2] ^ low ^ high, high};
-}
-
 /// The tetrahedra of a pyramid as corners of it.
 std::vector<std::array<std::size_t, 4>> divided_pyramid(std::span<const VertexIndex> nodes, Rank rank) {
   const std::size_t k = is_divided_from_first({nodes[0], nodes[1], nodes[2], nodes[3]}, rank) ? 0 : 1;
@@ -241,8 +236,8 @@ SidesOfWideCells::SidesOfWideCells(const TetMesh& mesh) {
       std::sort(key.begin(), key.end());
       sides_.emplace_back(key, q);
       const auto [one, other] = halves_of(q);
-      halves_.emplace_back(sorted_corners(one), q);
-      halves_.emplace_back(sorted_corners(other), q);
+      halves_.emplace_back(face_key(one), q);
+      halves_.emplace_back(face_key(other), q);
     });
   std::sort(sides_.begin(), sides_.end());
   std::sort(halves_.begin(), halves_.end());
@@ -259,20 +254,19 @@ std::optional<std::array<VertexIndex, 4>> SidesOfWideCells::outward(const std::a
 }
 
 std::array<VertexIndex, 4> SidesOfWideCells::around(const Triangle& half) const {
-  const auto found = std::lower_bound(halves_.begin(), halves_.end(), std::pair{sorted_corners(half), Quad{}});
+  const auto found = std::lower_bound(halves_.begin(), halves_.end(), std::pair{face_key(half), Quad{}});
   return found->second;
 }
 
 std::size_t SidesOfWideCells::other_half(const std::vector<Triangle>& faces, std::size_t f) const {
-  const Triangle key = sorted_corners(faces[f]);
+  const Triangle key = face_key(faces[f]);
   const auto found = std::lower_bound(halves_.begin(), halves_.end(), std::pair{key, Quad{}});
   if (found == halves_.end() || found->first != key) return faces.size();
   const auto halves = halves_of(found->second);
-  const Triangle other = sorted_corners(halves[sorted_corners(halves[0]) == key ? 1 : 0]);
-  const auto at = std::lower_bound(faces.begin(), faces.end(), other, [](const Triangle& t, const Triangle& wanted) {
-    return sorted_corners(t) < wanted;
-  });
-  if (at == faces.end() || sorted_corners(*at) != other) return faces.size();
+  const Triangle other = face_key(halves[face_key(halves[0]) == key ? 1 : 0]);
+  const auto at = std::lower_bound(faces.begin(), faces.end(), other,
+                                   [](const Triangle& t, const Triangle& wanted) { return face_key(t) < wanted; });
+  if (at == faces.end() || face_key(*at) != other) return faces.size();
   return static_cast<std::size_t>(at - faces.begin());
 }
 

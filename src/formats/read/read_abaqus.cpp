@@ -13,7 +13,6 @@
 #include <algorithm>
 #include <array>
 #include <map>
-#include <optional>
 #include <set>
 #include <span>
 #include <utility>
@@ -335,16 +334,11 @@ class Abaqus {
     std::set<Triangle> faces;
 
     bool empty() const { return faces.empty(); }
-    void insert(Triangle t) {
-      std::sort(t.begin(), t.end());
-      faces.insert(t);
-    }
+    void insert(const Triangle& t) { faces.insert(face_key(t)); }
     /// A triangle, or a quadrilateral by either of its diagonals.
     bool has_face(const std::vector<VertexIndex>& nodes) const {
       const auto has = [&](std::size_t i, std::size_t j, std::size_t k) {
-        Triangle t{nodes[i], nodes[j], nodes[k]};
-        std::sort(t.begin(), t.end());
-        return faces.contains(t);
+        return faces.contains(face_key({nodes[i], nodes[j], nodes[k]}));
       };
       if (nodes.size() < 3) return false;
       return has(0, 1, 2) || (nodes.size() == 4 && has(0, 1, 3));

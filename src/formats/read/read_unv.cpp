@@ -3,7 +3,6 @@
 
 #include "formats/containers/scanner.h"
 #include "formats/parts/raw_mesh.h"
-#include "formats/parts/wide_orders.h"
 #include "formats/read/id_map.h"
 #include "formats/read/readers.h"
 

@@ -11,7 +11,6 @@
 #include <array>
 #include <cmath>
 #include <cstring>
-#include <optional>
 #include <utility>
 
 #include <fmt/core.h>

@@ -14,7 +14,6 @@
 #include <array>
 #include <charconv>
 #include <filesystem>
-#include <limits>
 #include <map>
 #include <memory>
 #include <optional>

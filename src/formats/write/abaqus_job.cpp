@@ -4,8 +4,6 @@
 #include "formats/write/abaqus_job.h"
 
 #include <algorithm>
-#include <array>
-#include <cmath>
 
 namespace octafront::io {
 namespace {

@@ -4,7 +4,6 @@
 #include <octafront/units.h>
 
 #include <algorithm>
-#include <array>
 #include <cmath>
 #include <fstream>
 #include <vector>

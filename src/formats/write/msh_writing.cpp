@@ -5,7 +5,6 @@
 
 #include <algorithm>
 #include <map>
-#include <utility>
 
 #include <fmt/core.h>
 
@@ -15,9 +14,10 @@ using Kind = NamedSet::Kind;
 
 std::int32_t gmsh_type_of(std::size_t dimension, std::size_t nodes) {
   using Types = std::map<std::size_t, std::int32_t>;
-  static const std::array<Types, 4> kTypes{Types{{1, 15}}, Types{{2, 1}, {3, 8}},
-                                           Types{{3, 2}, {4, 3}, {6, 9}, {8, 16}},
-                                           Types{{4, 4}, {5, 7}, {6, 6}, {10, 11}, {13, 19}, {15, 18}}};
+  static const std::array<Types, 4> kTypes{
+      Types{{1, 15}}, Types{{2, 1}, {3, 8}, {4, 26}, {5, 27}},
+      Types{{3, 2}, {4, 3}, {6, 9}, {8, 16}, {10, 21}, {15, 23}},
+      Types{{4, 4}, {5, 7}, {6, 6}, {10, 11}, {13, 19}, {15, 18}, {20, 29}, {35, 30}}};
   return kTypes[dimension].at(nodes);
 }
 
@@ -88,20 +88,16 @@ std::size_t nodes_of_element(const MeshParts& mesh, const MixedCells& cells, std
 
 PeriodicLinks::PeriodicLinks(const MeshParts& mesh, FunctionRef<std::int32_t(std::size_t)> entity_of)
     : mesh_(mesh.mesh()) {
-  const auto sorted = [](Triangle t) {
-    std::sort(t.begin(), t.end());
-    return t;
-  };
   std::vector<Originals> originals(mesh_.periods.size());
   for (const auto& [period, copy, original] : mesh_.periodic_nodes) originals[period][copy] = original;
   std::map<Triangle, std::int32_t> entity_at;
-  for (std::size_t f = 0; f < mesh_.boundary.size(); ++f) entity_at[sorted(mesh_.boundary[f])] = entity_of(f);
+  for (std::size_t f = 0; f < mesh_.boundary.size(); ++f) entity_at[face_key(mesh_.boundary[f])] = entity_of(f);
   for (std::uint32_t period = 0; period < originals.size(); ++period) {
-    std::array<VertexIndex, 6> room;
+    FaceRoom room;
     for (std::size_t f = 0; f < mesh_.boundary.size(); ++f) {
       Triangle original{};
       if (!copied(period, mesh_.boundary[f], originals[period], original)) continue;
-      const auto at = entity_at.find(sorted(original));
+      const auto at = entity_at.find(face_key(original));
       if (at == entity_at.end()) continue;
       auto& pairs = links_[{static_cast<std::int32_t>(period), entity_of(f), at->second}];
       for (const VertexIndex v : mesh.face_nodes(f, room))

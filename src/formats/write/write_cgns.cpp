@@ -9,7 +9,6 @@
 #include "formats/write/cgns_file.h"
 #include "formats/write/writers.h"
 
-#include <algorithm>
 #include <array>
 #include <limits>
 #include <string>

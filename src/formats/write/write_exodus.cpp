@@ -13,8 +13,6 @@
 #include <algorithm>
 #include <array>
 #include <limits>
-#include <map>
-#include <memory>
 #include <numeric>
 #include <string>
 

@@ -25,9 +25,9 @@ struct WrittenSection {
 };
 constexpr WrittenSection kEdges{"Edges", "EdgesP2", 5, 25}, kTriangles{"Triangles", "TrianglesP2", 6, 24},
     kQuadrilaterals{"Quadrilaterals", nullptr, 7, 0};
-constexpr std::array<WrittenSection, MixedCells::kKinds> kSolids{WrittenSection{"Tetrahedra", "TetrahedraP2", 8, 30},
-                                                                 WrittenSection{"Pyramids", nullptr, 49, 0},
-                                                                 WrittenSection{"Prisms", nullptr, 9, 0}};
+constexpr std::array<WrittenSection, MixedCells::kKinds> kMeditSolids{
+    WrittenSection{"Tetrahedra", "TetrahedraP2", 8, 30}, WrittenSection{"Pyramids", nullptr, 49, 0},
+    WrittenSection{"Prisms", nullptr, 9, 0}};
 
 /// Calls write(section, count, nodes each, node_at(i, k), reference_at(i)) for each section.
 template <class Write>
@@ -51,7 +51,7 @@ void for_each_section(const MeshParts& mesh, const Write& write) {
     const std::size_t begin = cells.begin(kind), end = cells.end(kind);
     if (begin == end) continue;
     write(
-        kSolids[kind], end - begin, cells.nodes_per(kind),
+        kMeditSolids[kind], end - begin, cells.nodes_per(kind),
         [&](std::size_t i, std::size_t k) { return cells.node(begin + i, k); },
         [&](std::size_t i) {
           return mesh.number_of(Part::Origin::kRegion, mesh.region_of(cells.first_tet(begin + i)));

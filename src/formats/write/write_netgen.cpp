@@ -5,7 +5,6 @@
 #include "formats/containers/text_writer.h"
 #include "formats/write/writers.h"
 
-#include <algorithm>
 #include <array>
 
 namespace octafront::io {
@@ -13,7 +12,7 @@ namespace {
 
 /// Places of VTK's nodes in Netgen's list.
 constexpr std::array<std::uint8_t, 10> kNetgenTet{0, 2, 1, 3, 6, 4, 7, 5, 9, 8};
-constexpr std::array<std::uint8_t, 6> kTriangle{0, 1, 2, 4, 5, 3};
+constexpr std::array<std::uint8_t, 6> kNetgenTriangle{0, 1, 2, 4, 5, 3};
 
 /// Names of the parts of one origin by number, counted from 1; those without one get what they are called elsewhere.
 void write_names_of_parts(TextWriter& out, std::string_view section, std::span<const Part> parts) {
@@ -33,7 +32,7 @@ void write_netgen(MeshOutput& output, const MeshParts& mesh) {
   for (std::size_t f = 0; f < mesh.faces(); ++f) {
     const std::uint32_t patch = mesh.patch_of(f) + 1;
     out << patch << ' ' << patch << ' ' << behind(f) << " 0 " << std::uint64_t{mesh.nodes_per_face()};
-    for (std::size_t k = 0; k < mesh.nodes_per_face(); ++k) out << ' ' << mesh.face_node(f, kTriangle[k]) + 1;
+    for (std::size_t k = 0; k < mesh.nodes_per_face(); ++k) out << ' ' << mesh.face_node(f, kNetgenTriangle[k]) + 1;
     out << '\n';
   }
   out.line("\n# matnr np p1 p2 p3 p4\nvolumeelements\n{}", mesh.tets());

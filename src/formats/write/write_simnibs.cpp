@@ -35,11 +35,6 @@ std::int32_t tissue_of(const MeshParts& mesh, std::size_t tet) {
   return static_cast<std::int32_t>(mesh.number_of(Part::Origin::kRegion, mesh.region_of(tet)));
 }
 
-Triangle key_of_face(Triangle t) {
-  std::sort(t.begin(), t.end());
-  return t;
-}
-
 /// The faces of the boundary and of interfaces, each out of the tissue that it bounds.
 struct TissueFaces {
   std::vector<Triangle> corners;
@@ -48,7 +43,7 @@ struct TissueFaces {
 
 TissueFaces tissue_faces(const MeshParts& mesh) {
   std::vector<std::pair<Triangle, std::uint32_t>> wanted(mesh.faces());
-  for (std::uint32_t f = 0; f < wanted.size(); ++f) wanted[f] = {key_of_face(mesh.face(f)), f};
+  for (std::uint32_t f = 0; f < wanted.size(); ++f) wanted[f] = {face_key(mesh.face(f)), f};
   std::sort(wanted.begin(), wanted.end());
   TissueFaces faces{std::vector<Triangle>(wanted.size()), std::vector<std::int32_t>(wanted.size(), 0)};
   for (std::size_t t = 0; t < mesh.tets(); ++t) {
@@ -57,8 +52,8 @@ TissueFaces tissue_faces(const MeshParts& mesh) {
       const Tet& tet = mesh.mesh().tets[t];
       const auto at = [&](int corner) { return tet[static_cast<std::size_t>(corner)]; };
       const Triangle face{at(a), at(b), at(c)};
-      const auto found = std::lower_bound(wanted.begin(), wanted.end(), std::pair{key_of_face(face), 0u});
-      if (found == wanted.end() || found->first != key_of_face(face)) continue;
+      const auto found = std::lower_bound(wanted.begin(), wanted.end(), std::pair{face_key(face), 0u});
+      if (found == wanted.end() || found->first != face_key(face)) continue;
       std::int32_t& known = faces.tag[found->second];
       if (known != 0 && rank_of_tissue(known - kSurfaces) <= rank_of_tissue(tag)) continue;
       known = kSurfaces + tag;

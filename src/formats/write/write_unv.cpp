@@ -23,10 +23,10 @@ using Kind = NamedSet::Kind;
 constexpr std::string_view kDelimiter = "    -1\n";
 
 /// Places of VTK's nodes in a list of the format.
-constexpr std::array<std::uint8_t, 10> kTet10{0, 4, 1, 5, 2, 6, 7, 8, 9, 3};
-constexpr std::array<std::uint8_t, 6> kTriangle6{0, 3, 1, 4, 2, 5};
-constexpr std::array<std::uint8_t, 8> kQuad8{0, 4, 1, 5, 2, 6, 3, 7};
-constexpr std::array<std::uint8_t, 3> kBeam3{0, 2, 1};
+constexpr std::array<std::uint8_t, 10> kUnvTet10{0, 4, 1, 5, 2, 6, 7, 8, 9, 3};
+constexpr std::array<std::uint8_t, 6> kUnvTriangle6{0, 3, 1, 4, 2, 5};
+constexpr std::array<std::uint8_t, 8> kUnvQuad8{0, 4, 1, 5, 2, 6, 3, 7};
+constexpr std::array<std::uint8_t, 3> kUnvBeam3{0, 2, 1};
 
 /// Others end a name at the first blank.
 constexpr NameRules kUnvNames{
@@ -51,14 +51,14 @@ class UnvWriter {
     for (std::size_t e = 0; e < mesh_.edges(); ++e) {
       head(first_edge() + e, second ? 24 : 11, mesh_.curve_of(e), mesh_.nodes_per_edge());
       text_ << "         0         1         1\n";
-      nodes(mesh_.edge_nodes(e, edge_), kBeam3);
+      nodes(mesh_.edge_nodes(e, edge_), kUnvBeam3);
     }
     for (std::size_t f = 0; f < cells_.faces(); ++f) {
       const bool is_quad = f >= cells_.triangles();
       const auto all = cells_.face_nodes(f, face_);
       head(first_face() + f, std::uint64_t{is_quad ? 94U : 91U} + second, mesh_.patch_of(cells_.first_face(f)),
            all.size());
-      is_quad ? nodes(all, kQuad8) : nodes(all, kTriangle6);
+      is_quad ? nodes(all, kUnvQuad8) : nodes(all, kUnvTriangle6);
     }
     for (std::size_t c = 0; c < cells_.cells(); ++c) write_solid(c);
     text_ << kDelimiter;
@@ -76,7 +76,7 @@ class UnvWriter {
     if (cells_.kind(c) == MixedCells::kPyramid) all = as_wedge(all, wedge);
     const int type = is_tet ? (second ? 118 : 111) : second ? 113 : 112;
     head(first_tet() + c, static_cast<std::uint64_t>(type), mesh_.region_of(cells_.first_tet(c)), all.size());
-    is_tet ? nodes(all, kTet10) : nodes(all, kUnvWide.wedge);
+    is_tet ? nodes(all, kUnvTet10) : nodes(all, kUnvWide.wedge);
   }
 
   std::uint64_t first_edge() const { return 1; }
@@ -146,9 +146,9 @@ class UnvWriter {
   const MeshParts& mesh_;
   MixedCells cells_;
   std::vector<std::string> names_;
-  std::array<VertexIndex, 15> solid_;
-  std::array<VertexIndex, 8> face_;
-  std::array<VertexIndex, 3> edge_;
+  CellRoom solid_;
+  FaceRoom face_;
+  EdgeRoom edge_;
 };
 
 }  // namespace

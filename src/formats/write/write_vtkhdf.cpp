@@ -9,7 +9,6 @@
 #include "formats/write/writers.h"
 
 #include <algorithm>
-#include <functional>
 #include <map>
 #include <set>
 #include <string>

@@ -15,7 +15,6 @@
 #include "formats/write/writers.h"
 
 #include <limits>
-#include <string>
 
 namespace octafront::io {
 namespace {

@@ -3,7 +3,6 @@
 // formats/write: writers, one source per format. They take a surface or MeshParts, and throw OutputError.
 
 #include <octafront/poly_mesh.h>
-#include <octafront/tet_mesh.h>
 
 #include "formats/containers/atomic_file.h"
 #include "formats/parts/mesh_output.h"

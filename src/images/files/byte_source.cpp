@@ -1,7 +1,6 @@
 #include "images/files/byte_source.h"
 
 #include <algorithm>
-#include <limits>
 
 #include <fmt/core.h>
 #include <zlib.h>

@@ -1,7 +1,6 @@
 #include "images/files/slice_files.h"
 
 #include <algorithm>
-#include <cstring>
 
 #include <fmt/core.h>
 

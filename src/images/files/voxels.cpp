@@ -6,14 +6,12 @@
 #include "base/core/wording.h"
 
 #include <algorithm>
-#include <atomic>
 #include <bit>
 #include <cmath>
 #include <cstring>
 #include <functional>
 #include <limits>
 #include <type_traits>
-#include <utility>
 
 #include <fmt/core.h>
 

@@ -5,7 +5,6 @@
 #include "images/nets/resolve_conflicts.h"
 
 #include <span>
-#include <string>
 #include <vector>
 
 namespace octafront::nets {

@@ -3,8 +3,6 @@
 #include <octafront/image.h>
 
 #include <cstddef>
-#include <string>
-#include <vector>
 
 namespace octafront::nets {
 

@@ -7,7 +7,6 @@
 #include "base/geometry/self_intersection.h"
 
 #include <algorithm>
-#include <cmath>
 #include <functional>
 #include <limits>
 #include <numbers>

@@ -14,7 +14,6 @@
 #include "improve/shape/input_force.h"
 
 #include <algorithm>
-#include <optional>
 
 namespace octafront::improve {
 namespace {

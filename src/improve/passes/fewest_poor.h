@@ -7,7 +7,6 @@
 #include "improve/shape/shape.h"
 
 #include <algorithm>
-#include <cmath>
 
 namespace octafront::improve {
 

@@ -3,7 +3,6 @@
 #include "improve/passes/vertex_stars.h"
 
 #include <algorithm>
-#include <cmath>
 
 namespace octafront::improve {
 namespace {

@@ -6,7 +6,6 @@
 #include "improve/shape/edit_mesh.h"
 
 #include <span>
-#include <utility>
 #include <vector>
 
 namespace octafront::improve {

@@ -7,7 +7,6 @@
 #include "base/mesh/renumber.h"
 
 #include <algorithm>
-#include <array>
 #include <numeric>
 #include <span>
 #include <utility>

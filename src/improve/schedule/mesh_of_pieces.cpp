@@ -8,7 +8,6 @@
 #include "base/geometry/spatial_order.h"
 #include "base/mesh/index_range.h"
 #include "base/mesh/renumber.h"
-#include "base/mesh/tet_key.h"
 #include "base/shared/in_parts.h"
 #include "base/shared/marks.h"
 #include "base/shared/packing.h"

@@ -7,7 +7,6 @@
 // then gets room off the surface, at the very end: raise_flat.h.
 
 #include <octafront/options.h>
-#include <octafront/size_field.h>
 #include <octafront/tet_mesh.h>
 
 #include "base/core/stage.h"

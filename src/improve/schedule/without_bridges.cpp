@@ -3,7 +3,6 @@
 #include <octafront/quality.h>
 
 #include "base/core/flat_map.h"
-#include "base/geometry/measures.h"
 #include "base/geometry/predicates.h"
 #include "base/labels/labels.h"
 #include "base/mesh/adjacency.h"

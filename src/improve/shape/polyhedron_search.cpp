@@ -17,7 +17,7 @@ std::uint16_t key_of(Corner a, Corner b, Corner c) {
   while (a > b || a > c) std::tie(a, b, c) = std::tuple{b, c, a};
   return static_cast<std::uint16_t>(a << 8 | b << 4 | c);
 }
-PolyhedronSearch::Face corners_of(std::uint16_t face) {
+PolyhedronSearch::Face unpacked(std::uint16_t face) {
   return {static_cast<Corner>(face >> 8), static_cast<Corner>(face >> 4 & 15), static_cast<Corner>(face & 15)};
 }
 
@@ -65,7 +65,7 @@ void PolyhedronSearch::value_fours(std::span<const Vec3> p, const Floor& floor) 
 }
 
 float PolyhedronSearch::value(Corner apex, std::uint16_t face, int& four) const {
-  const auto [x, y, z] = corners_of(face);
+  const auto [x, y, z] = unpacked(face);
   if (apex == x || apex == y || apex == z) return 0;
   std::array<Corner, 4> c{apex, x, y, z};
   int sign = 1;
@@ -80,7 +80,7 @@ float PolyhedronSearch::value(Corner apex, std::uint16_t face, int& four) const 
 /// Takes the tetrahedron (apex, face) out of what is open; false if part of it was not.
 bool PolyhedronSearch::cover(Front& front, std::uint16_t face, Corner apex) const {
   front.erase(face);
-  const auto [x, y, z] = corners_of(face);
+  const auto [x, y, z] = unpacked(face);
   const std::array<Corner, 4> tet{apex, x, y, z};
   for (int i = 1; i < 4; ++i) {
     const auto& f = kTetFaces[i];
@@ -121,7 +121,7 @@ void PolyhedronSearch::search(const Front& front, float worst) {
   }
   std::sort(fewest.begin(), fewest.begin() + fewest_count,
             [](const Way& a, const Way& b) { return a.value != b.value ? a.value > b.value : a.apex < b.apex; });
-  const auto [x, y, z] = corners_of(hardest);
+  const auto [x, y, z] = unpacked(hardest);
   for (int i = 0; i < fewest_count && fewest[i].value > bound_; ++i) {
     Front next = front;
     if (!cover(next, hardest, fewest[i].apex)) continue;

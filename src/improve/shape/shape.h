@@ -9,8 +9,6 @@
 #include <octafront/vec.h>
 
 #include <algorithm>
-#include <cmath>
-#include <cstddef>
 
 namespace octafront::improve {
 

@@ -6,7 +6,6 @@
 #include "base/places/places.h"
 
 #include <algorithm>
-#include <utility>
 
 #include <fmt/core.h>
 

@@ -6,7 +6,6 @@
 #include "base/geometry/self_intersection.h"
 
 #include <algorithm>
-#include <cmath>
 
 namespace octafront::layers {
 

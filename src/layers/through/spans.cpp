@@ -6,9 +6,7 @@
 #include "layers/through/through.h"
 
 #include <algorithm>
-#include <array>
 #include <cstdint>
-#include <span>
 #include <tuple>
 #include <vector>
 

@@ -1,5 +1,4 @@
 #include "base/core/flat_map.h"
-#include "base/geometry/measures.h"
 #include "base/labels/labels.h"
 #include "base/mesh/renumber.h"
 #include "layers/through/through.h"
@@ -7,7 +6,6 @@
 #include <algorithm>
 #include <array>
 #include <numeric>
-#include <optional>
 #include <utility>
 #include <vector>
 

@@ -11,12 +11,9 @@
 #include "base/geometry/self_intersection.h"
 #include "base/mesh/edge_table.h"
 #include "base/mesh/known_surface.h"
-#include "pipeline/stages/adapt_section.h"
 #include "pipeline/stages/adapting.h"
 #include "pipeline/stages/requirements.h"
 #include "pipeline/stages/stages.h"
-#include "sizing/sources/check_size_options.h"
-#include "sizing/sources/make_size_field.h"
 
 #include <array>
 #include <map>

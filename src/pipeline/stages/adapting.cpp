@@ -3,6 +3,7 @@
 #include <octafront/error.h>
 #include <octafront/repair.h>
 
+#include "base/core/wording.h"
 #include "base/mesh/known_surface.h"
 #include "improve/schedule/without_bridges.h"
 #include "pipeline/stages/stages.h"
@@ -22,10 +23,6 @@ namespace {
 
 /// How far walls may stray where nothing is said, in parts of the diagonal: as for automatic sizes.
 constexpr double kStrayOfAdapt = 0.004;
-
-std::string words_of(Vec3 p) {
-  return fmt::format("({:.6g}, {:.6g}, {:.6g})", p.x, p.y, p.z);
-}
 
 }  // namespace
 
@@ -93,7 +90,7 @@ void require_near(const adapt::GivenFit& made) {
   throw InputError(
       fmt::format("the surface is near no wall of the mesh (as at {}): is it of the same part, in the same "
                   "unit and place? Near is within {:g} % of the diagonal, or half an edge",
-                  words_of(made.own_wall_at), 100 * kReachOfSurface));
+                  at_point(made.own_wall_at), 100 * kReachOfSurface));
 }
 
 void tell_given(const adapt::GivenFit& made, const Stage& stage) {
@@ -104,10 +101,10 @@ void tell_given(const adapt::GivenFit& made, const Stage& stage) {
     stage.note(
         fmt::format("{} of {} wall triangles are farther from the surface than {:g} % of the diagonal and half an "
                     "edge, or turned away from it, as at {}: they stand for their own smooth surface",
-                    made.own_walls, made.walls, 100 * kReachOfSurface, words_of(made.own_wall_at)));
+                    made.own_walls, made.walls, 100 * kReachOfSurface, at_point(made.own_wall_at)));
   if (made.held > 0)
     stage.note(fmt::format("{} vertices stay beside the surface, as at {}: elements would be poor or turn inside out",
-                           made.held, words_of(made.held_at)));
+                           made.held, at_point(made.held_at)));
 }
 
 void tell_fit(const MetricSummary& fit, const Stage& stage) {
@@ -115,16 +112,16 @@ void tell_fit(const MetricSummary& fit, const Stage& stage) {
       fmt::format("{:.2f} % of the edges fit (longest {:.2f}, shortest {:.2f} of what is wanted); quality in the "
                   "metric: least {:.3f} at {}, mean {:.3f}",
                   100.0 * static_cast<double>(fit.fitting) / static_cast<double>(std::max<std::uint64_t>(fit.edges, 1)),
-                  fit.longest, fit.shortest, fit.quality_min, words_of(fit.quality_min_at), fit.quality_mean));
+                  fit.longest, fit.shortest, fit.quality_min, at_point(fit.quality_min_at), fit.quality_mean));
 }
 
 void tell_unmet(const MetricSummary& fit, const WallDeviation& deviation, bool has_surface, const Stage& stage) {
   if (fit.far > 0) {
     std::string text =
         fmt::format("{} of {} edges are not within half and twice of what is wanted", fit.far, fit.edges);
-    if (fit.longest > 2) text += fmt::format("; the longest, {:.2f}, at {}", fit.longest, words_of(fit.longest_at));
+    if (fit.longest > 2) text += fmt::format("; the longest, {:.2f}, at {}", fit.longest, at_point(fit.longest_at));
     if (fit.shortest < 0.5)
-      text += fmt::format("; the shortest, {:.2f}, at {}", fit.shortest, words_of(fit.shortest_at));
+      text += fmt::format("; the shortest, {:.2f}, at {}", fit.shortest, at_point(fit.shortest_at));
     stage.note(text +
                ": faces, curves and corners that must stay, and walls that curve more than the sizes follow, "
                "keep elements from them");
@@ -134,7 +131,7 @@ void tell_unmet(const MetricSummary& fit, const WallDeviation& deviation, bool h
         fmt::format("walls are up to {:.3g} from the {} at {}, beyond the bound of {:.3g}: elements there could "
                     "not be made smaller",
                     deviation.upper, has_surface ? "given surface" : "smooth surface of the old ones",
-                    words_of(deviation.place), deviation.bound));
+                    at_point(deviation.place), deviation.bound));
 }
 
 }  // namespace octafront

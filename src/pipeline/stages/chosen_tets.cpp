@@ -3,7 +3,6 @@
 #include <octafront/error.h>
 #include <octafront/vec.h>
 
-#include "base/geometry/measures.h"
 #include "base/places/places.h"
 
 #include <algorithm>

@@ -1,7 +1,6 @@
 #include <octafront/generate.h>
 
 #include "base/mesh/complex.h"
-#include "base/mesh/complex_patches.h"
 #include "base/places/places.h"
 #include "base/places/shape_place.h"
 #include "pipeline/stages/contact_choice.h"

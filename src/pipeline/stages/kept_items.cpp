@@ -4,7 +4,6 @@
 #include <octafront/named_groups.h>
 
 #include "base/core/flat_map.h"
-#include "base/geometry/measures.h"
 #include "base/mesh/face_table.h"
 #include "base/places/places.h"
 

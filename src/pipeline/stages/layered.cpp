@@ -3,7 +3,6 @@
 #include <octafront/error.h>
 
 #include "base/core/elementary.h"
-#include "base/geometry/measures.h"
 #include "base/mesh/complex.h"
 #include "base/mesh/features.h"
 #include "base/places/places.h"

@@ -9,8 +9,7 @@
 #include "base/shared/shared_tets.h"
 
 #include <algorithm>
-#include <bit>
-#include <span>
+#include <cstring>
 
 #ifdef _WIN32
 #include "base/core/files_of_windows.h"
@@ -55,8 +54,9 @@ class Fnv {
  public:
   template <class T>
   void add(const T& value) {
-    for (const unsigned char byte : std::bit_cast<std::array<unsigned char, sizeof(T)>>(value))
-      hash_ = (hash_ ^ byte) * 0x100000001b3ull;
+    unsigned char bytes[sizeof(T)];
+    std::memcpy(bytes, &value, sizeof(T));
+    for (const unsigned char byte : bytes) hash_ = (hash_ ^ byte) * 0x100000001b3ull;
   }
   std::uint64_t value() const { return hash_; }
 
@@ -162,6 +162,7 @@ std::uint64_t mesh_hash(const TetMesh& mesh, const Comm& comm) {
   for (const std::uint32_t patch : mesh.patch) hash.add(patch);
   for (const auto& mids : mesh.mid_nodes)
     for (const VertexIndex v : mids) hash.add(v);
+  for (const VertexIndex v : mesh.high_nodes) hash.add(v);
   for (const Triangle& face : mesh.interfaces)
     for (const VertexIndex v : face) hash.add(v);
   for (const std::uint32_t patch : mesh.interface_patch) hash.add(patch);

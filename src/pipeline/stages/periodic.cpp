@@ -106,7 +106,7 @@ class LinkFinder {
     std::vector<Triangle> known;
     for (const Triangle& t : copies) {
       for (const VertexIndex v : t) at.add(mesh_.points[v], v);
-      known.push_back(sorted(t));
+      known.push_back(face_key(t));
     }
     std::sort(known.begin(), known.end());
     std::map<VertexIndex, VertexIndex> original_of;
@@ -117,7 +117,7 @@ class LinkFinder {
         if (copy[i] == kNone) refuse(t[i], k);
         original_of[copy[i]] = t[i];
       }
-      if (!std::binary_search(known.begin(), known.end(), sorted(copy))) refuse(t[0], k);
+      if (!std::binary_search(known.begin(), known.end(), face_key(copy))) refuse(t[0], k);
       if (!mesh_.is_second_order()) continue;
       const Triangle nodes = node_of_.of(t), their = node_of_.of(copy);
       for (int i = 0; i < 3; ++i) original_of[their[i]] = nodes[i];
@@ -127,11 +127,6 @@ class LinkFinder {
     for (const auto& [copy, original] : original_of)
       if (copy != original) links.push_back({copy, original});  // on the axis of a rotation they are the same
     return links;
-  }
-
-  static Triangle sorted(Triangle t) {
-    std::sort(t.begin(), t.end());
-    return t;
   }
 
   [[noreturn]] void refuse(VertexIndex v, int k) const {

@@ -4,7 +4,6 @@
 
 #include "base/core/parallel.h"
 #include "base/geometry/measures.h"
-#include "base/mesh/complex.h"
 #include "improve/curved/curved.h"
 #include "improve/schedule/schedule.h"
 #include "pipeline/stages/found_shapes.h"

@@ -2,8 +2,6 @@
 #include <octafront/options.h>
 #include <octafront/units.h>
 
-#include "base/core/elementary.h"
-#include "base/geometry/measures.h"
 #include "pipeline/stages/true_shape.h"
 
 #include <algorithm>

@@ -2,7 +2,6 @@
 
 #include <octafront/error.h>
 
-#include "base/geometry/measures.h"
 #include "base/mesh/complex.h"
 #include "improve/curved/curved.h"
 #include "pipeline/stages/kept_shape.h"

@@ -8,7 +8,6 @@
 #include "pipeline/stages/stages.h"
 
 #include <functional>
-#include <string>
 #include <vector>
 
 namespace octafront {

@@ -1,14 +1,13 @@
 #include "pipeline/stages/walls_apart.h"
 
 #include "adapt/schedule/rim_metric.h"
+#include "base/core/wording.h"
 #include "base/geometry/self_intersection.h"
 #include "base/geometry/triangle_tree.h"
 
 #include <algorithm>
-#include <array>
 #include <cstdint>
 #include <string>
-#include <utility>
 #include <vector>
 
 #include <fmt/core.h>
@@ -18,10 +17,6 @@ namespace {
 
 /// Walls are kept at places that cross and more and more layers of triangles around, so many times.
 constexpr int kMostKeptLayers = 4;
-
-std::string place_of(Vec3 p) {
-  return fmt::format("({:.6g}, {:.6g}, {:.6g})", p.x, p.y, p.z);
-}
 
 class WallsApart {
  public:
@@ -46,7 +41,7 @@ class WallsApart {
       stage_.note(fmt::format(
           "on the surface given the boundary would have crossed itself at {}, where it is near to itself: it is on "
           "its own smooth surface instead, everywhere",
-          place_of(p)));
+          at_point(p)));
       keep_where_it_crosses();
       if (crossings_.empty()) return;
     }
@@ -79,7 +74,7 @@ class WallsApart {
     stage_.note(
         fmt::format("the boundary would have crossed itself, first at {}, where it is near to itself: {} of its "
                     "{} triangles stay as they were there; a smaller --max-deviation may help",
-                    place_of(first), std::count_if(given_.boundary.begin(), given_.boundary.end(), is_kept),
+                    at_point(first), std::count_if(given_.boundary.begin(), given_.boundary.end(), is_kept),
                     given_.boundary.size()));
   }
 
@@ -107,7 +102,7 @@ class WallsApart {
     stage_.note(
         fmt::format("the boundary would have crossed itself at {}, where it is near to itself: it stays as it "
                     "was, everywhere; a smaller --max-deviation may help",
-                    place_of(place())));
+                    at_point(place())));
     rules_.keep_walls = true;
     adapt(adapt::RimMetric(given_, with_frozen(adapt::on_walls(given_)), metric_));
   }

@@ -4,7 +4,6 @@
 // they stay as they were.
 
 #include "adapt/schedule/adapt_mesh.h"
-#include "base/geometry/triangle_tree.h"
 
 #include <functional>
 #include <vector>

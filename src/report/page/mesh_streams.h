@@ -6,9 +6,7 @@
 
 #include "report/page/bytes.h"
 
-#include <array>
 #include <cstdint>
-#include <string>
 #include <utility>
 #include <vector>
 

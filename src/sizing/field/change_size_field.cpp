@@ -5,7 +5,6 @@
 #include "sizing/field/octree_corners.h"
 
 #include <algorithm>
-#include <cmath>
 
 namespace octafront {
 

@@ -40,9 +40,7 @@ std::vector<SortedFace> sorted_faces(const SizeMesh& mesh) {
       const Triangle face{mesh.tets[t][static_cast<std::size_t>(corners[0])],
                           mesh.tets[t][static_cast<std::size_t>(corners[1])],
                           mesh.tets[t][static_cast<std::size_t>(corners[2])]};
-      Triangle key = face;
-      std::sort(key.begin(), key.end());
-      all.push_back({key, face, t});
+      all.push_back({face_key(face), face, t});
     }
   std::sort(all.begin(), all.end(),
             [](const SortedFace& a, const SortedFace& b) { return std::tie(a.key, a.tet) < std::tie(b.key, b.tet); });

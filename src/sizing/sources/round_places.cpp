@@ -10,7 +10,6 @@
 #include <cstdint>
 #include <memory>
 #include <numbers>
-#include <utility>
 
 namespace octafront {
 

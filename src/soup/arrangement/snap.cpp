@@ -13,10 +13,6 @@ namespace {
 
 using Vertices = std::vector<VertexIndex>;
 
-Box3 box_around(Vec3 p, double reach) {
-  return {p - Vec3{reach, reach, reach}, p + Vec3{reach, reach, reach}};
-}
-
 class Snapper {
  public:
   Snapper(Soup& soup, double reach) : soup_(soup), reach_(reach) {}
@@ -91,7 +87,7 @@ class Snapper {
     edges.erase(std::unique(edges.begin(), edges.end()), edges.end());
     const TriangleTree tree = tree_of_segments(soup_.points, edges);
     for (const VertexIndex v : vertices_)
-      tree.for_each_box_near(box_around(at(v), reach_), [&](std::uint32_t e, const TriangleCorners&) {
+      tree.for_each_box_near(Box3{at(v), at(v)}.grown(reach_), [&](std::uint32_t e, const TriangleCorners&) {
         const auto [a, b] = edges[e];
         if (a == v || b == v) return true;
         const Vec3 q = closest_point_on_segment(at(v), at(a), at(b));
@@ -116,7 +112,7 @@ class Snapper {
     }
     const TriangleTree tree(soup_.points, faces);
     for (const VertexIndex v : vertices_)
-      tree.for_each_box_near(box_around(at(v), reach_), [&](std::uint32_t f, const TriangleCorners& c) {
+      tree.for_each_box_near(Box3{at(v), at(v)}.grown(reach_), [&](std::uint32_t f, const TriangleCorners& c) {
         if (std::find(faces[f].begin(), faces[f].end(), v) != faces[f].end()) return true;
         if (distance(at(v), closest_point_on_triangle(at(v), c[0], c[1], c[2])) > reach_) return true;
         for (std::size_t i = 0; i < 3; ++i)

@@ -30,12 +30,6 @@ constexpr double kOfEdge = 0.25;
 /// these came nearer, the middle went away.
 constexpr double kBend = 1.5;
 
-Box3 grown(Box3 box, double by) {
-  box.lo -= Vec3{by, by, by};
-  box.hi += Vec3{by, by, by};
-  return box;
-}
-
 /// Where two segments come nearest to each other; nullopt if that is at an end of either, or they run side by side.
 struct GapMeeting {
   Vec3 at, other;
@@ -372,7 +366,7 @@ class BodyMeeting {
     constexpr double kHalf = 0.5;
     const double within = kHalf * distance(p, q);
     if (within <= misfits_.floor()) return false;
-    return !own.for_each_box_near(grown({q, q}, within), [&](std::uint32_t u, const TriangleCorners& c) {
+    return !own.for_each_box_near(Box3{q, q}.grown(within), [&](std::uint32_t u, const TriangleCorners& c) {
       const Vec3 nearest = closest_point_on_triangle(q, c[0], c[1], c[2]);
       return distance(nearest, q) > within || dot(later_.normals[u], p - nearest) > -within;
     });
@@ -406,7 +400,7 @@ class BodyMeeting {
     const double floor = misfits_.floor();
     double nearest = TriangleTree::kFar;
     Vec3 at;
-    tree.for_each_box_near(grown({p, p}, of_reach), [&](std::uint32_t t, const TriangleCorners& c) {
+    tree.for_each_box_near(Box3{p, p}.grown(of_reach), [&](std::uint32_t t, const TriangleCorners& c) {
       if (reach(earlier_.faces[t]) != of_reach) return true;
       const Vec3 q = closest_point_on_triangle(p, c[0], c[1], c[2]);
       const double d = distance(p, q);
@@ -433,7 +427,7 @@ class BodyMeeting {
       least[kind] = d;
       target[kind] = q;
     };
-    tree.for_each_box_near(grown({p, p}, of_reach), [&](std::uint32_t t, const TriangleCorners&) {
+    tree.for_each_box_near(Box3{p, p}.grown(of_reach), [&](std::uint32_t t, const TriangleCorners&) {
       if (reach(earlier_.faces[t]) != of_reach) return true;
       for (int i = 0; i < 3; ++i) {
         const Triangle& corners = earlier_.triangles[t];
@@ -498,7 +492,7 @@ class BodyMeeting {
     double nearest = TriangleTree::kFar;
     std::uint32_t face = kNone;
     const auto each_near = [&](double within, auto&& visit) {
-      tree.for_each_box_near(grown({p, p}, within), [&](std::uint32_t t, const TriangleCorners& c) {
+      tree.for_each_box_near(Box3{p, p}.grown(within), [&](std::uint32_t t, const TriangleCorners& c) {
         if (has_no_area(points_, on.triangles[t])) return true;
         visit(t, c);
         return true;
@@ -547,7 +541,7 @@ class BodyMeeting {
     for (std::uint32_t s = 0; s < later_.triangles.size(); ++s) {
       if (s % 1024 == 0) context_.check();
       if (has_no_area(points_, later_.triangles[s])) continue;
-      tree.for_each_box_near(grown(box_of(wall_corners(points_, later_.triangles[s])), kBend * most_),
+      tree.for_each_box_near(box_of(wall_corners(points_, later_.triangles[s])).grown(kBend * most_),
                              [&](std::uint32_t t, const TriangleCorners&) {
                                cross_edges_of(t, s, own, crossed);
                                return true;
@@ -687,7 +681,7 @@ class Closing {
   void join(std::uint32_t b, std::vector<BodyFace> body) {
     std::vector<BodyFace> near;
     for (std::uint32_t a = 0; a < b; ++a) {
-      const Box3 box = grown(boxes_[b], (1 + kBend) * misfits_.reach(a, b));
+      const Box3 box = boxes_[b].grown((1 + kBend) * misfits_.reach(a, b));
       if (!boxes_[a].overlaps(box)) continue;
       const auto from = std::stable_partition(together_[a].begin(), together_[a].end(),
                                               [&](const BodyFace& f) { return !box_here(f).overlaps(box); });

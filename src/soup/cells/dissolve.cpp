@@ -6,7 +6,6 @@
 #include "base/mesh/renumber.h"
 
 #include <algorithm>
-#include <array>
 #include <optional>
 #include <set>
 #include <tuple>
@@ -141,13 +140,9 @@ class Dissolving {
     return nearest;
   }
 
-  bool exists(Triangle t, VertexIndex at) const {
-    std::sort(t.begin(), t.end());
-    return std::any_of(around_[at].begin(), around_[at].end(), [&](std::uint32_t s) {
-      Triangle other = mesh_.triangles[s];
-      std::sort(other.begin(), other.end());
-      return other == t;
-    });
+  bool exists(const Triangle& t, VertexIndex at) const {
+    return std::any_of(around_[at].begin(), around_[at].end(),
+                       [&](std::uint32_t s) { return face_key(mesh_.triangles[s]) == face_key(t); });
   }
 
   void collapse(VertexIndex v, VertexIndex w) {

@@ -227,16 +227,10 @@ class Measuring {
       for (std::size_t j = i + 1; j < order.size(); ++j) {
         const BodyWall &a = walls_[order[i]], &b = walls_[order[j]];
         if (b.box.lo.x > a.box.hi.x + most) break;
-        if (grown(a.box, most_between(a, b)).overlaps(b.box))
+        if (a.box.grown(most_between(a, b)).overlaps(b.box))
           pairs.push_back({std::min(order[i], order[j]), std::max(order[i], order[j])});
       }
     return pairs;
-  }
-
-  static Box3 grown(Box3 box, double by) {
-    box.lo -= Vec3{by, by, by};
-    box.hi += Vec3{by, by, by};
-    return box;
   }
 
   double most_between(const BodyWall& a, const BodyWall& b) const {
@@ -254,7 +248,7 @@ class Measuring {
   /// The farthest that `a` lies from a wall of `b` that it belongs to.
   Met misfit(const BodyWall& a, const BodyWall& b) const {
     const double most = most_between(a, b);
-    const Box3 near_b = grown(b.box, most);
+    const Box3 near_b = b.box.grown(most);
     Met all;
     std::vector<char> in_contact(a.vertices.size(), 0);
     for (std::size_t v = 0; v < a.vertices.size(); ++v) {
@@ -306,7 +300,7 @@ class Measuring {
     const Vec3 p = place.at;
     double nearest = TriangleTree::kFar, sagitta = 0;
     Vec3 at, normal;
-    b.tree->for_each_box_near(grown({p, p}, most), [&](std::uint32_t t, const TriangleCorners& c) {
+    b.tree->for_each_box_near(Box3{p, p}.grown(most), [&](std::uint32_t t, const TriangleCorners& c) {
       const Vec3 q = closest_point_on_triangle(p, c[0], c[1], c[2]);
       const double d = distance(p, q);
       if (d > most || d >= nearest) return true;
@@ -339,7 +333,7 @@ class Measuring {
   /// facets nothing lies straight across.
   bool has_other_side(const BodyWall& b, Vec3 q, Vec3 n, double by) const {
     constexpr double kTwice = 2, kFacesAway = -0.4;
-    return !b.tree->for_each_box_near(grown({q, q}, kTwice * by), [&](std::uint32_t t, const TriangleCorners& c) {
+    return !b.tree->for_each_box_near(Box3{q, q}.grown(kTwice * by), [&](std::uint32_t t, const TriangleCorners& c) {
       if (dot(b.normals[t], n) > kFacesAway) return true;
       const Vec3 way = closest_point_on_triangle(q, c[0], c[1], c[2]) - q;
       return !(length(way) < kTwice * by && dot(way, n) < 0);

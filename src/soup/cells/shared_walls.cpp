@@ -4,14 +4,12 @@
 
 #include "base/core/disjoint_sets.h"
 #include "base/geometry/measures.h"
-#include "base/geometry/predicates.h"
 #include "base/geometry/triangle_tree.h"
 
 #include <algorithm>
 #include <array>
 #include <cmath>
 #include <map>
-#include <optional>
 #include <set>
 #include <utility>
 
@@ -28,11 +26,6 @@ void add(Chain& chain, const Triangle& t, int times) {
   }
 }
 
-Triangle sorted_corners(Triangle t) {
-  std::sort(t.begin(), t.end());
-  return t;
-}
-
 class Sharing {
  public:
   Sharing(const std::vector<Vec3>& points, const std::vector<BodyFace>& earlier, std::vector<BodyFace>& later,
@@ -40,7 +33,7 @@ class Sharing {
       : points_(points), later_(later), context_(context), floor_(misfits.floor()) {
     const std::uint32_t body = later.front().body;
     for (const BodyFace& f : earlier) {
-      if (!known_.insert(sorted_corners(f.corners)).second) continue;
+      if (!known_.insert(face_key(f.corners)).second) continue;
       walls_.push_back(f.corners);
       reach_.push_back(misfits.reach(f.body, body));
       most_ = std::max(most_, reach_.back());
@@ -77,7 +70,6 @@ class Sharing {
   Vec3 normal_of(const Triangle& t) const { return unit_normal(points_[t[0]], points_[t[1]], points_[t[2]]); }
   double area_of(const Triangle& t) const { return triangle_area(points_, t); }
   Vec3 middle_of(const Triangle& t) const { return (points_[t[0]] + points_[t[1]] + points_[t[2]]) / 3; }
-  static Box3 around(Vec3 p, double by) { return {p - Vec3{by, by, by}, p + Vec3{by, by, by}}; }
   bool is_corner_of_earlier(VertexIndex v) const { return vertices_.contains(v); }
 
   /// Triangles with corners of earlier walls, and in the middle not farther from them than vertices are.
@@ -86,19 +78,19 @@ class Sharing {
     for (const BodyFace& f : later_) {
       const Triangle& t = f.corners;
       const bool has_corners = std::all_of(t.begin(), t.end(), [&](VertexIndex v) { return is_corner_of_earlier(v); });
-      contact_.push_back(has_corners && (known_.contains(sorted_corners(t)) || lies_on(tree, t)));
+      contact_.push_back(has_corners && (known_.contains(face_key(t)) || lies_on(tree, t)));
     }
   }
   bool lies_on(const TriangleTree& tree, const Triangle& t) const {
     const Vec3 p = middle_of(t), n = normal_of(t);
-    return !tree.for_each_box_near(around(p, most_), [&](std::uint32_t w, const TriangleCorners& c) {
+    return !tree.for_each_box_near(Box3{p, p}.grown(most_), [&](std::uint32_t w, const TriangleCorners& c) {
       const Vec3 q = closest_point_on_triangle(p, c[0], c[1], c[2]);
       return !(distance(p, q) <= reach_[w] && face_each_other(n, normals_[w], n));
     });
   }
   bool is_shared() const {
     for (std::size_t t = 0; t < later_.size(); ++t)
-      if (contact_[t] && !known_.contains(sorted_corners(later_[t].corners))) return false;
+      if (contact_[t] && !known_.contains(face_key(later_[t].corners))) return false;
     return true;
   }
 

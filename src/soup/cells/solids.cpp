@@ -11,7 +11,6 @@
 
 #include <algorithm>
 #include <map>
-#include <string>
 #include <unordered_map>
 #include <utility>
 
@@ -145,7 +144,7 @@ bool boxes_meet(const std::vector<Body>& bodies, const MisfitLimits& limits) {
     all.add(boxes.back());
   }
   const double margin = std::max(kTouching * all.diagonal(), limits.most());
-  for (Box3& box : boxes) box = {box.lo - Vec3{margin, margin, margin}, box.hi + Vec3{margin, margin, margin}};
+  for (Box3& box : boxes) box = box.grown(margin);
   std::sort(boxes.begin(), boxes.end(), [](const Box3& a, const Box3& b) { return a.lo.x < b.lo.x; });
   for (std::size_t i = 0; i < boxes.size(); ++i)
     for (std::size_t j = i + 1; j < boxes.size() && boxes[j].lo.x <= boxes[i].hi.x; ++j)

@@ -3,8 +3,6 @@
 #include "base/geometry/live_triangles.h"
 
 #include <algorithm>
-#include <array>
-#include <cmath>
 #include <optional>
 #include <tuple>
 #include <utility>

@@ -4,8 +4,6 @@
 #include "soup/mend/loops.h"
 
 #include <algorithm>
-#include <array>
-#include <cmath>
 #include <numbers>
 #include <numeric>
 #include <unordered_map>

@@ -3,7 +3,6 @@
 #include <octafront/repair.h>
 
 #include "base/core/disjoint_sets.h"
-#include "base/core/wording.h"
 #include "base/geometry/measures.h"
 #include "base/geometry/predicates.h"
 #include "base/geometry/triangle_tree.h"

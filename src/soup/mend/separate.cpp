@@ -12,9 +12,6 @@
 #include "soup/mend/cap.h"
 
 #include <algorithm>
-#include <array>
-#include <cmath>
-#include <limits>
 #include <map>
 #include <set>
 
@@ -374,9 +371,7 @@ class Separation {
       if (std::none_of(t.begin(), t.end(), [&](VertexIndex v) { return copy_of_[v] != kNone; })) continue;
       Box3 box;
       for (const VertexIndex v : t) box.add(surface_.points[v]);
-      box.lo -= Vec3{most_, most_, most_};
-      box.hi += Vec3{most_, most_, most_};
-      tree.for_each_box_near(box, [&](std::uint32_t other, const TriangleCorners&) {
+      tree.for_each_box_near(box.grown(most_), [&](std::uint32_t other, const TriangleCorners&) {
         marked[other] = 1;
         return true;
       });

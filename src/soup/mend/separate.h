@@ -3,7 +3,6 @@
 #include <octafront/run_context.h>
 #include <octafront/surface_mesh.h>
 
-#include <cstdint>
 #include <vector>
 
 namespace octafront::mend {

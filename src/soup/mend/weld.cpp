@@ -5,8 +5,6 @@
 #include "base/geometry/triangle_tree.h"
 
 #include <algorithm>
-#include <array>
-#include <cmath>
 #include <map>
 #include <tuple>
 
@@ -40,10 +38,6 @@ TriangleTree tree_of(const Draft& draft, const std::vector<OpenEdge>& open) {
   std::vector<Triangle> flat;
   for (const OpenEdge& e : open) flat.push_back({e.from, e.to, e.to});
   return {draft.mesh.points, flat};
-}
-
-Box3 box_of_reach(Vec3 p, double reach) {
-  return {p - Vec3{reach, reach, reach}, p + Vec3{reach, reach, reach}};
 }
 
 /// Two open edges that may be one.
@@ -155,7 +149,7 @@ class Welder {
       if (i % 4096 == 0) draft_.context.check();
       const OpenEdge& e = open[i];
       const double reach = std::min(tolerance_, kNear * length_of(e));
-      tree.for_each_box_near(box_of_reach(at(e.from), reach), [&](std::uint32_t j, const TriangleCorners&) {
+      tree.for_each_box_near(Box3{at(e.from), at(e.from)}.grown(reach), [&](std::uint32_t j, const TriangleCorners&) {
         const OpenEdge& f = open[j];
         if (j == i || e.triangle == f.triangle) return true;
         const bool shares = e.from == f.from || e.from == f.to || e.to == f.from || e.to == f.to;
@@ -215,7 +209,7 @@ class Welder {
     std::vector<std::tuple<double, VertexIndex, VertexIndex>> pairs;
     for (const auto& [v, of_v] : room) {
       const double reach = std::min(tolerance_, kNearShared * of_v);
-      tree.for_each_box_near(box_of_reach(at(v), reach), [&, v = v](std::uint32_t i, const TriangleCorners&) {
+      tree.for_each_box_near(Box3{at(v), at(v)}.grown(reach), [&, v = v](std::uint32_t i, const TriangleCorners&) {
         for (const VertexIndex w : {open[i].from, open[i].to})
           if (v < w && distance(at(v), at(w)) <= std::min(reach, kNearShared * room[w]))
             pairs.push_back({distance(at(v), at(w)), v, w});
@@ -242,7 +236,7 @@ class Welder {
     std::vector<std::vector<VertexIndex>> beside(open.size());
     for (const VertexIndex v : vertices) {
       const Vec3 p = at(v);
-      tree.for_each_box_near(box_of_reach(p, tolerance_), [&](std::uint32_t i, const TriangleCorners&) {
+      tree.for_each_box_near(Box3{p, p}.grown(tolerance_), [&](std::uint32_t i, const TriangleCorners&) {
         const OpenEdge& e = open[i];
         const Triangle& t = draft_.mesh.triangles[e.triangle];
         if (std::find(t.begin(), t.end(), v) != t.end()) return true;

@@ -1,7 +1,5 @@
 #pragma once
 
-#include <octafront/run_context.h>
-
 #include "soup/tidy/steps.h"
 
 #include <cstdint>

@@ -4,11 +4,9 @@
 
 #include "base/geometry/measures.h"
 #include "base/geometry/plane_mesh.h"
-#include "base/geometry/segment_distance.h"
 #include "base/geometry/triangle_tree.h"
 
 #include <algorithm>
-#include <cmath>
 #include <utility>
 
 #include <fmt/core.h>

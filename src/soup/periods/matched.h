@@ -2,7 +2,6 @@
 
 // One division of two faces that lie opposite to each other.
 
-#include <octafront/run_context.h>
 #include <octafront/surface_mesh.h>
 
 #include "base/mesh/periodic_cell.h"
@@ -10,6 +9,7 @@
 #include <array>
 #include <cstdint>
 #include <map>
+#include <utility>
 #include <vector>
 
 namespace octafront::periods {

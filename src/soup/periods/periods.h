@@ -12,7 +12,6 @@
 #include "base/mesh/periods_asked.h"
 
 #include <cstdint>
-#include <string>
 #include <vector>
 
 namespace octafront {

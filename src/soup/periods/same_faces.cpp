@@ -1,7 +1,6 @@
 #include <octafront/error.h>
 
 #include "base/geometry/exact_point.h"
-#include "base/geometry/measures.h"
 #include "soup/periods/matched.h"
 #include "soup/periods/periods.h"
 #include "soup/periods/rebuilt.h"

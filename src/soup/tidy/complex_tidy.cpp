@@ -5,7 +5,6 @@
 #include "base/mesh/face_table.h"
 #include "soup/tidy/steps.h"
 
-#include <algorithm>
 #include <set>
 
 #include <fmt/core.h>

@@ -2,7 +2,6 @@
 #include "soup/tidy/steps.h"
 
 #include <algorithm>
-#include <array>
 #include <utility>
 
 namespace octafront::tidy {
@@ -24,8 +23,7 @@ VertexIndex apex(const Triangle& t, const Edge& edge) {
 }
 
 bool is_first_edge(const Triangle& t, const Edge& edge) {
-  Triangle sorted = t;
-  std::sort(sorted.begin(), sorted.end());
+  const Triangle sorted = face_key(t);
   return edge == Edge{sorted[0], sorted[1]};
 }
 

@@ -1,14 +1,11 @@
 // Whether the triangles of a complex agree on what lies between them.
 
 #include "base/core/disjoint_sets.h"
-#include "base/core/wording.h"
 #include "base/geometry/radial_order.h"
 #include "base/geometry/sight_line.h"
-#include "base/mesh/complex.h"
 #include "soup/tidy/defect_steps.h"
 
 #include <algorithm>
-#include <cmath>
 #include <optional>
 #include <set>
 #include <utility>

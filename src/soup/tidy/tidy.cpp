@@ -5,8 +5,6 @@
 #include "base/mesh/surface_topology.h"
 #include "soup/tidy/steps.h"
 
-#include <numeric>
-
 #include <fmt/core.h>
 
 namespace octafront {

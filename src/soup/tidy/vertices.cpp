@@ -1,13 +1,11 @@
 #include <octafront/error.h>
 
-#include "base/geometry/predicates.h"
 #include "base/mesh/renumber.h"
 #include "soup/tidy/steps.h"
 
 #include <algorithm>
 #include <bit>
 #include <cmath>
-#include <utility>
 
 #include <fmt/core.h>
 

@@ -230,10 +230,6 @@ bool faces_along(const TriangleCorners& t, Vec3 normal) {
   return dot(double_area_normal(t[0], t[1], t[2]), normal) > 0;
 }
 
-Box3 box_around(Vec3 p, double reach) {
-  return {p - Vec3{reach, reach, reach}, p + Vec3{reach, reach, reach}};
-}
-
 /// The nearest point to p of the triangles that face along `normal`, if it is within kOtherSide times the distance of
 /// the nearest point of all: of a thin wall the right side. Otherwise that one, which is at `distance`.
 TriangleTree::Nearest nearest_facing(const TriangleTree& tree, Vec3 p, Vec3 normal, double& distance) {
@@ -242,14 +238,14 @@ TriangleTree::Nearest nearest_facing(const TriangleTree& tree, Vec3 p, Vec3 norm
   distance = std::sqrt(any.squared_distance);
   const double reach = kOtherSide * distance;
   TriangleTree::Nearest best{any.point, any.triangle, reach * reach};
-  Box3 box = box_around(p, faces_along(tree.corners(any.triangle), normal) ? kALittleMore * distance : reach);
+  Box3 box = Box3{p, p}.grown(faces_along(tree.corners(any.triangle), normal) ? kALittleMore * distance : reach);
   tree.for_each_box_near(box, [&](std::uint32_t triangle, const TriangleCorners& t) {
     if (!faces_along(t, normal)) return true;
     const Vec3 q = closest_point_on_triangle(p, t[0], t[1], t[2]);
     const double d = squared_distance(p, q);
     if (!(d < best.squared_distance)) return true;
     best = {q, triangle, d};
-    box = box_around(p, kALittleMore * std::sqrt(d));
+    box = Box3{p, p}.grown(kALittleMore * std::sqrt(d));
     return true;
   });
   return best;

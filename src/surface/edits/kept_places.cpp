@@ -2,8 +2,6 @@
 
 #include "base/geometry/measures.h"
 
-#include <algorithm>
-
 namespace octafront::surface {
 
 std::vector<std::uint8_t> mark_kept_places(InputSurface& input, const TriangleTree& tree,

@@ -11,7 +11,6 @@
 #include <cmath>
 #include <map>
 #include <set>
-#include <unordered_map>
 #include <utility>
 
 namespace octafront::surface {

@@ -4,7 +4,6 @@
 #include "surface/lines/seams.h"
 
 #include <algorithm>
-#include <utility>
 
 namespace octafront::surface {
 

@@ -8,7 +8,6 @@
 #include "surface/remeshing/front_kind.h"
 
 #include <algorithm>
-#include <cmath>
 #include <limits>
 #include <utility>
 

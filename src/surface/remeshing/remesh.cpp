@@ -1,7 +1,6 @@
 #include "surface/remeshing/remesh.h"
 
 #include "base/core/validate.h"
-#include "base/geometry/measures.h"
 #include "surface/edits/crossings.h"
 #include "surface/edits/source_triangles.h"
 #include "surface/edits/turning.h"
@@ -11,7 +10,6 @@
 
 #include <algorithm>
 #include <array>
-#include <cmath>
 #include <numeric>
 #include <utility>
 

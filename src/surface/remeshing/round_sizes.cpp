@@ -1,6 +1,5 @@
 #include "surface/remeshing/round_sizes.h"
 
-#include "base/geometry/measures.h"
 #include "surface/lines/thinned.h"
 
 #include <algorithm>

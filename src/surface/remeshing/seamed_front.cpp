@@ -1,8 +1,6 @@
 // The steps of a complex, on its parts cut open along seams (seams.h).
 
 #include "base/core/elementary.h"
-#include "base/geometry/measures.h"
-#include "base/mesh/complex.h"
 #include "surface/edits/crossings.h"
 #include "surface/lines/corner_sizes.h"
 #include "surface/lines/flat_sizes.h"

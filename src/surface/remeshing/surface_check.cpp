@@ -8,7 +8,6 @@
 #include "soup/tidy/steps.h"
 
 #include <algorithm>
-#include <numeric>
 #include <tuple>
 #include <utility>
 

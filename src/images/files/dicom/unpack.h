@@ -2,9 +2,6 @@
 
 #include "images/files/image_readers.h"
 
-#include <optional>
-#include <string>
-
 namespace octafront::image {
 
 /// The same DICOM file written without compression as a whole, if it is deflated; else as it is. Throws InputError for
