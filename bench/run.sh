@@ -17,6 +17,8 @@
 #   bench/run.sh improve     improvement against its targets, never worse, start meshes of others -> docs/measured/improve-bench.md
 #   bench/run.sh adapt       the Working Group's cases of metrics, a loop with FEniCSx -> docs/measured/adapt.md
 #   bench/run.sh adapt_loops  meshes adapted to small and large sizes in turn, ten times -> docs/measured/adapt-isotropic.md
+#   bench/run.sh carry       fields on 30 pairs of meshes: integrals, bounds, order of convergence, a million elements -> docs/measured/carry.md
+#   bench/run.sh move        a ball as a level set in twenty places of a box; blocks and bars stretched, flattened, bent, twisted -> docs/measured/move.md
 #   bench/run.sh formats     how fast meshes are written, every format beside a plain write -> docs/measured/formats-bench.md
 #   bench/run.sh parts       meshes in parts: what divisions are worth, time and memory beside one file -> docs/measured/parts.md
 #   bench/run.sh second_order   all clean models, balls, tori, cylinders: proven? how true? at what cost? -> docs/measured/second-order.md
@@ -36,6 +38,7 @@
 #                            and Gmsh (-> docs/measured/layers-flows.md); layers_solved: a laminar pipe with and without -> docs/measured/layers-solved.md
 #   bench/run.sh flows       a car, a wing and a bracket in a wind tunnel, tetrahedra and polyhedra, solved by simpleFoam -> docs/measured/flows.md
 #   bench/run.sh cavity      a lid-driven cavity on tetrahedra, their dual and polyDualMesh's, beside published values -> docs/measured/cavity.md
+#   bench/run.sh high_order  orders 2 to 4: how true are walls, how good elements, read by Gmsh, beside its own -> docs/measured/high-order.md
 #   bench/run.sh inside      sheets, lines and points in a block, beside Gmsh and TetGen     -> docs/measured/inside.md
 #   bench/run.sh periodic    periodic cells with and without periods, beside Gmsh, solved    -> docs/measured/periodic.md
 #   bench/run.sh ranks       one mesh by 1, 2, 4 and 8 processes: memory, bytes, imbalance, what all do alike -> docs/measured/ranks.md
@@ -48,7 +51,7 @@ cd "$(dirname "$0")/.."
 source scripts/lib/apt.sh
 
 case ${1:-} in
-  status | derived | pipeline | surface | elements | gradation | volume | graded | peers | experiments | complexes | improve | adapt | adapt_loops | formats | parts | second_order | dry_run | repair | known_answers | damage | images | images_needed | four_shells | thin | budget | cad | layers | layers_shapes | layers_flows | layers_peers | layers_solved | inside | periodic | ranks | threads | answers | polyhedral | flows | cavity) ;;
+  status | derived | pipeline | surface | elements | gradation | volume | graded | peers | experiments | complexes | improve | adapt | adapt_loops | carry | move | formats | parts | second_order | dry_run | repair | known_answers | damage | images | images_needed | four_shells | thin | budget | cad | layers | layers_shapes | layers_flows | layers_peers | layers_solved | inside | periodic | ranks | threads | answers | polyhedral | flows | cavity | high_order) ;;
   *) sed -n '2,/^set/s/^# \{0,1\}//p' "$0"; exit 2 ;;
 esac
 need_packages "${build_packages[@]}" python3
@@ -68,6 +71,7 @@ need_packages "${build_packages[@]}" python3
 { [ "$1" != repair ] && [ "$1" != damage ]; } || need_packages python3-numpy python3-meshio
 [[ $1 != layers_* ]] || need_packages python3-numpy python3-meshio openfoam
 { [ "$1" != flows ] && [ "$1" != cavity ]; } || need_packages python3-numpy openfoam
+[ "$1" != high_order ] || need_packages python3-numpy python3-gmsh "${cad_packages[@]}"
 [ "$1" != adapt ] || need_packages python3-numpy python3-dolfinx
 [ "$1" != periodic ] || need_packages calculix-ccx
 { [ "$1" != inside ] && [ "$1" != periodic ]; } || need_packages python3-numpy python3-meshio python3-gmsh tetgen
@@ -76,7 +80,7 @@ need_packages "${build_packages[@]}" python3
 [ "$1" != images_needed ] || need_packages python3-numpy python3-nibabel
 [ "$1" != four_shells ] || need_packages python3-numpy python3-scipy python3-nibabel python3-meshio
 [[ $1 != images* ]] || [ -d volumes ] || bench/models/get-volumes.sh
-[ "$1" = formats ] || [ "$1" = ranks ] || [ "$1" = adapt ] || [ "$1" = complexes ] || [ "$1" = four_shells ] || [[ $1 = images* ]] || [ "$1" = thin ] || [ "$1" = cad ] || [ "$1" = answers ] || [ "$1" = flows ] || [ "$1" = cavity ] || [ -d models/clean ] || bench/models/get-models.sh --ct
+[ "$1" = move ] || [ "$1" = formats ] || [ "$1" = ranks ] || [ "$1" = adapt ] || [ "$1" = complexes ] || [ "$1" = four_shells ] || [[ $1 = images* ]] || [ "$1" = thin ] || [ "$1" = cad ] || [ "$1" = answers ] || [ "$1" = flows ] || [ "$1" = cavity ] || [ "$1" = high_order ] || [ -d models/clean ] || bench/models/get-models.sh --ct
 tests=OFF
 [ "$1" != complexes ] && [ "$1" != known_answers ] || tests=ON  # what makes complexes is theirs, and a judge
 mpi=()
@@ -102,5 +106,5 @@ cmake --build --preset release --target octafront_cli octafront_evaluate octafro
 [[ $1 != layers_* ]] || [ -d models/flows ] || bench/models/get-flows.sh build/release/cli/octafront
 python=python3
 [ "$1" != repair ] && [ "$1" != known_answers ] && [ "$1" != damage ] && [[ $1 != images* ]] || python=/usr/bin/python3  # Debian's, with its NumPy
-[[ $1 != layers_* ]] && [ "$1" != polyhedral ] && [ "$1" != flows ] && [ "$1" != cavity ] && [ "$1" != inside ] && [ "$1" != periodic ] && [ "$1" != answers ] && [ "$1" != four_shells ] || python=/usr/bin/python3
+[[ $1 != layers_* ]] && [ "$1" != polyhedral ] && [ "$1" != flows ] && [ "$1" != cavity ] && [ "$1" != high_order ] && [ "$1" != inside ] && [ "$1" != periodic ] && [ "$1" != answers ] && [ "$1" != four_shells ] || python=/usr/bin/python3
 exec "$python" -m "bench.run.$1" build/release "${@:2}"

@@ -52,7 +52,7 @@ bool says_more(std::string_view occurrence, std::string_view product) {
 
 class DocumentReader {
  public:
-  DocumentReader(const Handle(TDocStd_Document) & document, const LabelsOfShapes& said, Part& part)
+  DocumentReader(const Handle(TDocStd_Document) & document, const SaidOfShapes& said, Part& part)
       : shapes_(XCAFDoc_DocumentTool::ShapeTool(document->Main())),
         colours_(XCAFDoc_DocumentTool::ColorTool(document->Main())),
         layers_(XCAFDoc_DocumentTool::LayerTool(document->Main())),
@@ -127,8 +127,8 @@ class DocumentReader {
       if (says_nothing(own.name) || (solids == 1 && !says_nothing(product.name))) own.name.clear();
       Labels labels = merged(own, product);
       if (says_nothing(labels.name)) labels.name.clear();
-      part_.solids.push_back(
-          {it.Current().Moved(place, false), labels, name.empty() ? product.name : name, material_of(label)});
+      part_.solids.push_back({it.Current().Moved(place, false), labels, name.empty() ? product.name : name,
+                              material_of(label), density_of(shape, it.Current())});
     }
     for (TopExp_Explorer it(shape, TopAbs_FACE, TopAbs_SOLID); it.More(); it.Next())
       part_.loose.push_back(it.Current().Moved(place, false));
@@ -145,7 +145,7 @@ class DocumentReader {
       const auto found = map.find(shape.TShape().get());
       return found == map.end() ? Labels{} : found->second;
     };
-    return merged(find(said_), find(inside));
+    return merged(find(said_.labels), find(inside));
   }
 
   static Labels merged(Labels first, const Labels& second) {
@@ -164,6 +164,14 @@ class DocumentReader {
       if (!shape.IsNull()) all[shape.TShape().get()] = labels_of(part);
     }
     return all;
+  }
+
+  /// Of the product, or of this solid of it, as a file of one solid may have it.
+  double density_of(const TopoDS_Shape& product, const TopoDS_Shape& solid) const {
+    for (const TopoDS_Shape& shape : {product, solid})
+      if (const auto found = said_.densities.find(shape.TShape().get()); found != said_.densities.end())
+        return found->second;
+    return 0;
   }
 
   static std::string material_of(const TDF_Label& label) {
@@ -205,14 +213,14 @@ class DocumentReader {
   const Handle(XCAFDoc_ShapeTool) shapes_;
   const Handle(XCAFDoc_ColorTool) colours_;
   const Handle(XCAFDoc_LayerTool) layers_;
-  const LabelsOfShapes& said_;
+  const SaidOfShapes& said_;
   Part& part_;
   std::vector<std::string> assemblies_;  ///< per solid: the occurrences that it is in, by name
 };
 
 }  // namespace
 
-void take_document(const Handle(TDocStd_Document) & document, const LabelsOfShapes& said, Part& part) {
+void take_document(const Handle(TDocStd_Document) & document, const SaidOfShapes& said, Part& part) {
   DocumentReader(document, said, part).read();
 }
 

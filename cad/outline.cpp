@@ -75,7 +75,7 @@ CadModel model_without_triangles(const Part& part, const Topology& topology) {
   CadModel model;
   for (const Body& body : part.solids)
     model.solids.push_back(
-        {body.labels, body.product, body.material, volume_of(body.solid), area_of(body.solid), false});
+        {body.labels, body.product, body.material, body.density, volume_of(body.solid), area_of(body.solid), false});
   for (const Topology::OfFace& of : topology.faces) {
     model.faces.push_back(face_without_triangles(part, of));
     model.tolerance = std::max(model.tolerance, tolerance_of(of.face));

@@ -26,6 +26,7 @@ struct Body {
   TopoDS_Shape solid;
   Labels labels;
   std::string product = {}, material = {};  ///< as of Solid
+  double density = 0;
 };
 
 struct Part {

@@ -1,3 +1,4 @@
+#include "densities.h"
 #include "pipe.h"
 #include "read.h"
 #include "text.h"
@@ -290,7 +291,7 @@ void read_step(const std::string& path, const std::string& name, bool keep_going
   const Handle(Transfer_TransientProcess) process = reader.ChangeReader().WS()->TransferReader()->TransientProcess();
   const std::vector<std::string> missing = lost_entities(*model, process);
   if (!missing.empty()) lost(fmt::format("{}: {}", name, first_of(missing)), keep_going);
-  take_document(document, read_entities(*model, process), part);
+  take_document(document, {read_entities(*model, process), read_densities(*model, process)}, part);
 }
 
 }  // namespace octafront::cad

@@ -206,12 +206,34 @@ void declare_input(CLI::App& command, Arguments& a, const std::string& what) {
       ->type_name("FILE");
 }
 
-void declare_mesh_input(CLI::App& command, Arguments& a) {
+namespace {
+
+std::string endings_of_meshes() {
   std::string endings;
   for (const FormatInfo& info : known_formats())
     if (info.reads_mesh && !info.endings.empty() && !info.writes_surface)
       endings += (endings.empty() ? "" : ", ") + std::string(info.endings.substr(0, info.endings.find(' ')));
-  command.add_option("input", a.input, "Tetrahedral mesh: " + endings)->required()->type_name("MESH");
+  return endings;
+}
+
+}  // namespace
+
+void declare_mesh_input(CLI::App& command, Arguments& a) {
+  command.add_option("input", a.input, "Tetrahedral mesh: " + endings_of_meshes())->required()->type_name("MESH");
+}
+
+void declare_two_meshes(CLI::App& command, Arguments& a) {
+  command
+      .add_option_function<std::vector<std::string>>(
+          "input",
+          [&a](const std::vector<std::string>& both) {
+            a.bodies.assign(both.begin(), both.end());
+            a.input = a.bodies.front();
+          },
+          "The mesh with fields, and the one that gets them: " + endings_of_meshes())
+      ->required()
+      ->expected(2)
+      ->type_name("MESH");
 }
 
 void declare_options(CLI::App& command, std::string_view name, Arguments& a, std::string_view only) {

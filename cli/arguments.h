@@ -4,6 +4,7 @@
 #include <octafront/io.h>
 #include <octafront/limits.h>
 #include <octafront/options.h>
+#include <octafront/picture.h>
 #include <octafront/solver_checks.h>
 
 #include "option_names.h"
@@ -43,6 +44,8 @@ struct Arguments {
   std::filesystem::path regions, point_sizes, size_field;  ///< files with sizes; empty: none
   std::string metric;                                      ///< FILE[:FIELD] with a metric; empty: none
   std::string field;                                       ///< of the input, of which a metric is made; empty: none
+  std::string displacement;                                ///< the field of the input that it moves by
+  std::vector<std::pair<std::string, double>> level_sets;  ///< fields of the input, and the values of their surfaces
   double norm = 2;                                         ///< p of L^p, in which that metric makes its error least
   std::filesystem::path metric_out;                        ///< where the metric is written; empty: nowhere
   Options options;
@@ -54,7 +57,8 @@ struct Arguments {
   std::vector<std::pair<std::string, std::string>> samples;   ///< images and what their values are called on the mesh
   std::vector<std::pair<std::string, std::string>> formulas;  ///< fields by name and formula, in turn
   std::uint32_t material_bins = 0;                            ///< of the last field; 0: none
-  int new_order = 0;                                          ///< of a converted mesh; 0: as it is
+  PictureOptions picture;
+  int new_order = 0;  ///< of a converted mesh; 0: as it is
   int threads = 0;
   ProcessLimits limits;
   bool quiet = false;
@@ -66,6 +70,7 @@ struct Arguments {
 /// What a command works on: files that become a surface, or a mesh. `what`: in words.
 void declare_input(CLI::App& command, Arguments& arguments, const std::string& what = {});
 void declare_mesh_input(CLI::App& command, Arguments& arguments);
+void declare_two_meshes(CLI::App& command, Arguments& arguments);
 
 /// Declares the options that the command of this name takes: the rows of the library's tables
 /// (octafront/option_table.h) and of line_options.h, group by group; only those of one group, where one is named. A

@@ -2,10 +2,12 @@
 
 #include <octafront/octafront.h>
 
+#include "carrying.h"
 #include "domain.h"
 #include "estimate.h"
 #include "id_map.h"
 #include "inputs.h"
+#include "level_sets.h"
 #include "mesh_in_words.h"
 #include "metric_input.h"
 #include "open_cavity.h"
@@ -41,12 +43,12 @@ Options checked_options_of(const Session& session) {
 
 // Invalid elements of second order are named, for solvers stop at them.
 void prove_jacobians(Session& session, const TetMesh& mesh) {
-  if (!mesh.is_second_order()) return;
+  if (mesh.order() == 1) return;
   const JacobianSummary found = check_jacobians(mesh, session.context());
   session.found({{"second_order", Json::parse(to_json(found))}});
   if (found.invalid == 0) {
-    session.say(fmt::format("second order: every Jacobian proven positive; the least scaled one is {:.4f} (tet {})\n",
-                            found.least_scaled_jacobian, found.least_tet));
+    session.say(fmt::format("order {}: every Jacobian proven positive; the least scaled one is {:.4f} (tet {})\n",
+                            mesh.order(), found.least_scaled_jacobian, found.least_tet));
     return;
   }
   session.found({{"kind", "mesh"}, {"valid", false}});
@@ -56,8 +58,9 @@ void prove_jacobians(Session& session, const TetMesh& mesh) {
                         e.at.y, e.at.z, e.scaled_jacobian);
   throw InputError(
       fmt::format("{}: the Jacobian of {} is not positive everywhere, by the exact signs of its "
-                  "coefficients; move mid-side nodes towards the middle of their edges, or mesh anew:{}{}",
-                  session.arguments().input.string(), counted(found.invalid, "element"), list,
+                  "coefficients{}; move nodes towards where those of straight edges are, or mesh anew:{}{}",
+                  session.arguments().input.string(), counted(found.invalid, "element"),
+                  found.undecided > 0 ? fmt::format(" (of {} it is too near to 0 to tell)", found.undecided) : "", list,
                   found.invalid > found.first.size() ? "\n  ..." : ""));
 }
 
@@ -272,6 +275,7 @@ void run_improve(Session& session) {
   check_options(a.options);
   const TetMesh mesh = read_mesh_input(session);
   check_job_on(a, mesh);
+  const std::vector<MeshField> fields = fields_to_carry(session, mesh);
   SurfaceMesh surface;
   if (!a.surface.empty()) surface = read_surface(a.surface.string(), session.context()).surface;
   const auto improved = [&] {
@@ -284,7 +288,7 @@ void run_improve(Session& session) {
     }
   };
   const Improved result = improved();
-  write_mesh_targets(session, result.mesh);
+  write_mesh_targets(session, result.mesh, carried_fields(session, fields, mesh, result.mesh, OutsideNodes::kOnwards));
   session.say(fmt::format("{}: {}\n", a.input.string(), quality_in_words(result.before)));
   session.say(fmt::format("improved: {}\n", quality_in_words(result.report.quality)));
   session.tell(result.report);
@@ -311,43 +315,6 @@ auto on_adapted_input(Session& session, const Work& work) {
   }
 }
 
-/// Fields of the input that are to go along.
-std::vector<MeshField> fields_to_carry(Session& session, const TetMesh& mesh) {
-  const Arguments& a = session.arguments();
-  const bool is_default = a.carry.empty() || (a.carry.size() == 1 && a.carry[0] == "all");
-  if (a.carry.size() == 1 && a.carry[0] == "none") return {};
-  if (!some_target_holds_fields(a)) {
-    if (is_default) return {};
-    throw OptionError("--carry: no output holds fields; write .vtu, .vtk, .msh, .med, .exo, .cgns or .xdmf");
-  }
-  // What was not asked for is no reason to fail.
-  if (is_default && mesh.is_second_order()) return {};
-  try {
-    FieldsOfFile found =
-        read_fields(a.input.string(), mesh, is_default ? std::vector<std::string>{} : a.carry, session.context());
-    session.say_notes("fields", found.notes);
-    return std::move(found.fields);
-  } catch (const InputError& error) {
-    if (!is_default) throw;
-    session.say_notes("fields", {fmt::format("no field goes along: {}", error.what())});
-    return {};
-  }
-}
-
-std::vector<MeshField> carried_fields(Session& session, const std::vector<MeshField>& fields, const TetMesh& before,
-                                      const AdaptedMesh& adapted) {
-  std::vector<MeshField> all;
-  Json told = Json::array();
-  for (const MeshField& field : fields) {
-    session.context().report("fields", -1);
-    all.push_back(carried(field, before, adapted));
-    told.push_back(
-        {{"name", field.name}, {"of", field.of_elements ? "elements" : "points"}, {"components", field.components}});
-  }
-  if (!all.empty()) session.found({{"carried", told}});
-  return all;
-}
-
 /// Options that mean something for tetrahedra alone.
 void refuse_for_surfaces(const Arguments& a) {
   const auto refuse = [](bool given, const char* option) {
@@ -356,8 +323,8 @@ void refuse_for_surfaces(const Arguments& a) {
   };
   refuse(!a.options.adapt.only.empty(), "--only"), refuse(!a.map_file.empty(), "--map"),
       refuse(!a.field.empty(), "--from");
-  refuse(!a.carry.empty(), "--carry"), refuse(!a.page.empty(), "--report"),
-      refuse(!a.options.groups.empty(), "--group");
+  refuse(!a.level_sets.empty(), "--level-set"), refuse(!a.carry.empty(), "--carry"),
+      refuse(!a.page.empty(), "--report"), refuse(!a.options.groups.empty(), "--group");
 }
 
 /// Triangles alone, as files have them; the sets that they had.
@@ -398,20 +365,25 @@ void run_adapt(Session& session) {
   check_map_target(a.map_file);
   check_page_target(a.page);
   check_metric_options(a);
+  if (!a.level_sets.empty() && !a.map_file.empty())
+    throw OptionError("--map: where elements are divided along --level-set no old number is kept");
   if (!is_tet_mesh_file(a.input.string()) || !holds_tetrahedra(a.input.string(), session.context()))
     return adapt_surface_input(session);
   const Options options = checked_options_of(session);
-  const TetMesh mesh = read_mesh_input(session);
-  check_job_on(a, mesh);
+  TetMesh mesh = read_mesh_input(session);
+  if (a.level_sets.empty()) check_job_on(a, mesh);
   const std::optional<MetricMesh> metric = metric_asked_for(session, mesh);
-  const std::vector<MeshField> fields = fields_to_carry(session, mesh);
+  std::vector<MeshField> fields = fields_to_carry(session, mesh);
+  if (!a.level_sets.empty()) cut_along_fields(session, mesh, fields);
   const std::optional<Domain> ground = open_ground(session);
   const Domain* home = ground ? &*ground : nullptr;
   const AdaptedMesh result = on_adapted_input(session, [&] {
     return metric ? adapt_to_metric(mesh, *metric, options, session.context(), home)
                   : adapt_existing(mesh, options, session.context(), home);
   });
-  write_mesh_targets(session, result.mesh, carried_fields(session, fields, mesh, result));
+  const KnownItems same{result.old_of_new, result.old_tet_of_new};
+  write_mesh_targets(session, result.mesh,
+                     carried_fields(session, fields, mesh, result.mesh, OutsideNodes::kOnwards, &same));
   if (!a.map_file.empty()) write_map(a.map_file, mesh, result);
   tell_adapted(session, result);
   tell_worst(session, worst_elements(result.mesh, kWorstListed));
@@ -423,7 +395,7 @@ namespace {
 void convert_surface_input(Session& session) {
   const Arguments& a = session.arguments();
   check_surface_targets(a);
-  if (a.new_order == 2) throw OptionError("--order 2 is for tetrahedra, and the input is a surface alone");
+  if (a.new_order > 1) throw OptionError("--order above 1 is for tetrahedra, and the input is a surface alone");
   const SurfaceFile file = read_input(session);
   write_mesh_targets(session, mesh_of_triangles(session, file.surface, file));
   say_written(session);
@@ -438,8 +410,10 @@ void run_convert(Session& session) {
   if (std::filesystem::is_regular_file(a.input) && !holds_tetrahedra(a.input.string(), session.context()))
     return convert_surface_input(session);
   TetMesh mesh = read_mesh_input(session);
-  if (a.new_order == 1) make_linear(mesh);
-  if (a.new_order == 2 && !mesh.is_second_order()) make_second_order(mesh, nullptr, 40, session.context());
+  if (a.new_order > 0 && a.new_order != mesh.order()) {
+    make_linear(mesh);
+    if (a.new_order > 1) make_curved(mesh, a.new_order, nullptr, 40, session.context());
+  }
   // Whoever converts wants the mesh as it is; but nobody should find out in the solver.
   if (const auto defect = first_defect(mesh, session.context()))
     session.say_notes("checking", {"the mesh is not valid: " + *defect});

@@ -88,7 +88,7 @@ Domain open_input(Session& session, const IntakeOptions& options) {
     Domain domain = open_domain(in_utf8(a.bodies), told, session.context());
     if (domain.unit.empty()) domain.unit = a.unit;
     session.found(Json::parse(to_json(domain)));
-    session.frame = domain.frame, session.unit = domain.unit;
+    session.frame = domain.frame, session.unit = domain.unit, session.densities = domain.densities;
     if (!a.defects.empty() && !domain.repairs.empty())
       write_surface(a.defects.string(), marks_of(domain.repairs), session.context());
     return domain;

@@ -38,6 +38,7 @@ Failure failure_of(const RankFailure& e) {
 Failure failure_of(const LimitError& e) {
   using Limit = LimitError::Limit;
   if (e.limit == Limit::kMemory) return {kOutOfMemory, "memory", e.what(), "memory_limit"};
+  if (e.limit == Limit::kFolders) return {kLimitReached, "limit", e.what(), "outside_folders"};
   return {kLimitReached, "limit", e.what(), e.limit == Limit::kElements ? "max_elements" : "cpu_seconds"};
 }
 

@@ -39,16 +39,17 @@ bool asks_for_fields(const Arguments& a) {
 
 void check_asked_fields(const Arguments& a) {
   std::vector<std::string> names;
+  const bool may_carry = a.command == "adapt" || a.command == "improve" || a.command == "carry" || a.command == "move";
   for (const auto& [file, name] : a.samples) {
     if (!is_image(file)) throw InputError(fmt::format("{}: --sample needs an image, and this is none", file));
     names.push_back(name);
   }
   for (const auto& [name, text] : a.formulas) {
     // Fields of the input may have names of their own.
-    if (a.carry.empty() && a.command != "adapt") const Formula checked(text, 1, names);
+    if (!may_carry) const Formula checked(text, 1, names);
     names.push_back(name);
   }
-  if (a.material_bins > 0 && names.empty() && a.command != "adapt")
+  if (a.material_bins > 0 && names.empty() && !may_carry)
     throw OptionError("--material-bins needs a field: give --sample IMAGE=NAME, and a law by --field if there is one");
 }
 

@@ -107,7 +107,7 @@ std::array<VoxelRange, 3> voxel_ranges(const std::string& typed) {
 }
 
 std::vector<LineOption> image_line_options() {
-  constexpr std::string_view kCommands = "mesh surface size check", kGroup = "Images";
+  constexpr std::string_view kCommands = "mesh surface size check picture", kGroup = "Images";
   const auto to_image = [](auto take) {
     return each([take](Arguments& a, const std::string& typed) { take(a.intake.image, typed); });
   };

@@ -102,6 +102,7 @@ std::vector<std::string> parts_in_words(const CadInfo& info) {
                                                              occurrences.size(), listed(occurrences));
     line += fmt::format("{} volume {:.6g}, area {:.6g}", occurrences.size() == 1 ? ":" : "", solid.volume, solid.area);
     if (!solid.material.empty()) line += fmt::format(", of {}", solid.material);
+    if (solid.density > 0) line += fmt::format(", {:.6g} kg/m3", solid.density);
     if (!solid.color.empty()) line += fmt::format(", color {}", solid.color);
     lines.push_back(std::move(line));
   }
@@ -166,10 +167,8 @@ void tell_mesh_info(Session& session, const TetMesh& mesh) {
     const Vec3 p = mesh.points[i];
     volume += dot(cross(mesh.points[j] - p, mesh.points[k] - p), mesh.points[l] - p) / 6;
   }
-  session.found(
-      {{"kind", "mesh"}, {"order", mesh.is_second_order() ? 2 : 1}, {"box", json_of_box(box)}, {"volume", volume}});
-  session.say(
-      fmt::format("  {}\n  volume {:.6g}, order {}\n", box_in_words(box), volume, mesh.is_second_order() ? 2 : 1));
+  session.found({{"kind", "mesh"}, {"order", mesh.order()}, {"box", json_of_box(box)}, {"volume", volume}});
+  session.say(fmt::format("  {}\n  volume {:.6g}, order {}\n", box_in_words(box), volume, mesh.order()));
   tell_mesh(session, mesh, "a mesh");
   tell_places(session, place_names(mesh), false);  // its groups are told, with how large they are
 }

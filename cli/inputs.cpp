@@ -41,11 +41,14 @@ TetMesh read_mesh_input(Session& session) {
 }
 
 MeshFile read_mesh_file_input(Session& session) {
-  const Arguments& a = session.arguments();
-  MeshFile file = read_mesh_file(a.input.string(), session.context());
-  require_elements(static_cast<double>(file.mesh.tets.size()), a.input.string());
-  session.say(fmt::format("{}: {}, {} tetrahedra{}\n", a.input.string(), file.format, file.mesh.tets.size(),
-                          file.mesh.is_second_order() ? " of second order" : ""));
+  return read_mesh_file_of(session, session.arguments().input);
+}
+
+MeshFile read_mesh_file_of(Session& session, const std::filesystem::path& path) {
+  MeshFile file = read_mesh_file(path.string(), session.context());
+  require_elements(static_cast<double>(file.mesh.tets.size()), path.string());
+  session.say(fmt::format("{}: {}, {} tetrahedra{}\n", path.string(), file.format, file.mesh.tets.size(),
+                          file.mesh.order() > 1 ? fmt::format(" of order {}", file.mesh.order()) : ""));
   tell_reading(session, file.notes);
   return file;
 }

@@ -4,6 +4,7 @@
 
 #include "image_arguments.h"
 #include "job_options.h"
+#include "picture_options.h"
 #include "units.h"
 
 #include <algorithm>
@@ -16,10 +17,10 @@ namespace octafront::cli {
 
 namespace {
 
-constexpr std::string_view kWriters = "mesh improve adapt convert";
+constexpr std::string_view kWriters = "mesh improve adapt carry move convert";
 constexpr std::string_view kSizers = "mesh surface size adapt";
 constexpr std::string_view kSurfaces = "mesh surface size";
-constexpr std::string_view kAll = "mesh surface repair size improve adapt convert info check report";
+constexpr std::string_view kAll = "mesh surface repair size improve adapt carry move convert info check report picture";
 
 /// One value, or a list of them, that goes to `where(arguments)`.
 template <class Access>
@@ -146,6 +147,16 @@ std::pair<std::string, std::string> named_value(const std::string& typed, const 
   return {CLI::detail::trim_copy(typed.substr(0, equals)), CLI::detail::trim_copy(typed.substr(equals + 1))};
 }
 
+/// FIELD or FIELD=VALUE.
+std::pair<std::string, double> level_set(const std::string& typed) {
+  const std::size_t equals = typed.rfind('=');
+  double value = 0;
+  if (equals == std::string::npos) return {typed, value};
+  if (equals == 0 || !CLI::detail::lexical_cast(typed.substr(equals + 1), value) || !std::isfinite(value))
+    throw CLI::ValidationError("--level-set", "\"" + typed + "\" is not FIELD=VALUE, the name of a field and a number");
+  return {typed.substr(0, equals), value};
+}
+
 /// PLACE=H:DISTANCE or X,Y,Z=H:DISTANCE.
 NearSize near_size(const std::string& text) {
   const auto refuse = [&](const std::string& why) {
@@ -194,6 +205,8 @@ std::vector<LineOption> output_options() {
        needed([](Arguments & a) -> auto& { return a.output; }), "Surface: .stl, .obj, .off or .ply"},
       {"size", kGroup, "-o,--output", "FILE", "Background grid: .vtu",
        value([](Arguments & a) -> auto& { return a.output; }), "Background grid: .vtu"},
+      {"picture", kGroup, "-o,--output", "FILE", "Picture: .png",
+       needed([](Arguments & a) -> auto& { return a.output; }), "Picture: .png"},
       {"report", kGroup, "-o,--output", "FILE", "Web page: .html, one file that needs no network",
        needed([](Arguments & a) -> auto& { return a.output; }), "Web page: .html, one file that needs no network"},
       {kWriters, kGroup, "--format", "NAME",
@@ -243,8 +256,11 @@ std::vector<LineOption> output_options() {
        "Write the report as JSON, also of a run that fails; -: to standard output, alone",
        value([](Arguments & a) -> auto& { return a.json; }), "The report as JSON; -: to standard output"},
       {"convert", kGroup, "--order", "",
-       "1: mid-side nodes are dropped; 2: they are added where there are none, in the middle of straight edges [keep]",
-       choice_of<int>({{"keep", 0}, {"1", 1}, {"2", 2}}, [](Arguments& a, int order) { a.new_order = order; })},
+       "1: nodes behind the corners are dropped; 2, 3, 4: the mesh gets those of this order, with straight edges, "
+       "unless "
+       "it has it [keep]",
+       choice_of<int>({{"keep", 0}, {"1", 1}, {"2", 2}, {"3", 3}, {"4", 4}},
+                      [](Arguments& a, int order) { a.new_order = order; })},
   };
 }
 
@@ -333,12 +349,12 @@ std::vector<LineOption> adapt_options() {
        value([](Arguments & a) -> auto& { return a.field; }), "A metric made of a field of the input, with --elements"},
       {"adapt", kGroup, "--norm", "P", "The error of --from is least in the norm of L^P; 1 or more [2]",
        value([](Arguments & a) -> auto& { return a.norm; })},
-      {"adapt", kGroup, "--carry", "FIELD",
-       "Fields of the input that go along, by name and with commas between, or none: linear at points, conservative in "
-       "elements; into formats that hold fields [all]",
-       [](CLI::App& app, const LineOption& o, Arguments& a) {
-         return app.add_option(std::string(o.names), a.carry, o.help)->delimiter(',')->type_name(std::string(o.letter));
-       }},
+      {"adapt", kGroup, "--level-set", "FIELD[=VALUE]",
+       "The surface where a field at points of the input has a value [0] becomes faces: a region FIELD below it, a "
+       "patch "
+       "FIELD_surface; sizes stay unless others are asked for; several: the first that holds a place names its region",
+       each([](Arguments& a, const std::string& typed) { a.level_sets.push_back(level_set(typed)); }),
+       "The surface where a field has a value becomes faces"},
       {"adapt", kGroup, "--save-metric", "FILE", "Where that metric is written, to look at: .vtu, or MEDIT's .sol",
        value([](Arguments & a) -> auto& { return a.metric_out; })},
       {"adapt", kGroup, "--surface", "FILE",
@@ -348,6 +364,20 @@ std::vector<LineOption> adapt_options() {
       {"adapt", kGroup, "--map", "FILE",
        "Where old vertices and elements are now: .json (two arrays) or .csv, by numbers from 0; -1: gone",
        value([](Arguments & a) -> auto& { return a.map_file; })},
+  };
+}
+
+std::vector<LineOption> field_options() {
+  return {
+      {"move", "Motion", "--displacement", "FIELD",
+       "The field of the input, three numbers at each point, that it moves by",
+       value([](Arguments & a) -> auto& { return a.displacement; }), "The field at points that the mesh moves by"},
+      {"improve adapt carry move", "Fields", "--carry", "FIELD",
+       "Fields of the input that go along, by name and with commas between, or none: linear at points, conservative in "
+       "elements; into formats that hold fields [all]",
+       [](CLI::App& app, const LineOption& o, Arguments& a) {
+         return app.add_option(std::string(o.names), a.carry, o.help)->delimiter(',')->type_name(std::string(o.letter));
+       }},
   };
 }
 
@@ -385,6 +415,11 @@ std::vector<LineOption> run_options() {
          if (!(seconds > 0)) throw CLI::ValidationError(option, "is a number of seconds above 0");
          a.limits.cpu_seconds = seconds;
        })},
+      {kAll, kGroup, "--within", "FOLDER",
+       "Files are read and written only in this folder and below, links followed, also those that other files name; "
+       "may "
+       "be repeated [anywhere]",
+       each([](Arguments& a, const std::string& typed) { a.limits.folders.push_back(typed); })},
       {kAll, kGroup, "-q,--quiet", "", "Print nothing but errors",
        flag([](Arguments & a) -> auto& { return a.quiet; })},
   };
@@ -403,7 +438,10 @@ const std::vector<OptionGroup>& option_groups() {
       {"Volume", "volume", ""},
       {"Improvement", "improve", ""},
       {"Requirements", "require", "A mesh that does not meet them is not written: status 4"},
+      {"Picture", "picture", ""},
       {"Adaptation", "adapt", "The boundary stays on the smooth surface that it stands for"},
+      {"Motion", "move", "In steps as long as elements allow, mended between them"},
+      {"Fields", "fields", "What is known on the mesh goes along: at points linear, in elements conservative"},
       {"Several materials", "materials", "Cells between walls, or bodies of several files"},
       {"Inside", "inside", "What lies in the bodies and is part of their mesh, by the names of its files"},
       {"Images", "images", "Voxels: a region per label, or per band of grey values"},
@@ -421,7 +459,7 @@ const std::vector<LineOption>& line_options() {
   static const std::vector<LineOption> all = [] {
     std::vector<LineOption> list;
     for (const auto& part : {output_options(), job_options(), size_options(), body_options(), image_line_options(),
-                             adapt_options(), run_options()})
+                             adapt_options(), field_options(), picture_options(), run_options()})
       list.insert(list.end(), part.begin(), part.end());
     return list;
   }();

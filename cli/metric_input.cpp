@@ -13,6 +13,10 @@ bool was_typed(const Arguments& a, std::string_view option) {
   return std::any_of(a.given.begin(), a.given.end(), [&](const auto& entry) { return entry.first == option; });
 }
 
+constexpr std::array<std::string_view, 15> kSizes{
+    "size", "sizes",   "size-field", "size-of",          "size-near", "regions",     "point-sizes",     "curvature",
+    "gap",  "through", "facets",     "automatic-factor", "interior",  "chord-error", "feature-elements"};
+
 bool is_asked(const Arguments& a) {
   return !a.metric.empty() || !a.field.empty();
 }
@@ -67,9 +71,6 @@ void check_metric_options(const Arguments& a) {
   if (!a.metric.empty() && !a.field.empty()) throw OptionError("--metric and --from are two metrics; give one");
   if (!a.field.empty() && !a.options.size.elements)
     throw OptionError("--from needs a number of elements, as --elements 100000");
-  constexpr std::array<std::string_view, 15> kSizes{
-      "size", "sizes",   "size-field", "size-of",          "size-near", "regions",     "point-sizes",     "curvature",
-      "gap",  "through", "facets",     "automatic-factor", "interior",  "chord-error", "feature-elements"};
   for (const std::string_view option : kSizes)
     if (was_typed(a, option))
       throw OptionError(fmt::format("--{} asks for sizes, and {} says all of them: leave one out", option,
@@ -79,6 +80,16 @@ void check_metric_options(const Arguments& a) {
 
 std::optional<MetricMesh> metric_asked_for(const Session& session, const TetMesh& mesh) {
   const Arguments& a = session.arguments();
+  const bool asks_for_sizes =
+      was_typed(a, "elements") || std::any_of(kSizes.begin(), kSizes.end(), [&](auto o) { return was_typed(a, o); });
+  // What is only to be cut keeps its sizes.
+  if (!is_asked(a) && !a.level_sets.empty() && !asks_for_sizes) {
+    TetMesh linear = mesh;
+    make_linear(linear);
+    std::vector<Metric> lengths = metrics::of_edges(linear);
+    return MetricMesh{
+        std::move(linear.points), std::move(linear.tets), {}, std::move(lengths), "the sizes of the mesh"};
+  }
   if (!is_asked(a)) return std::nullopt;
   MetricMesh metric = a.metric.empty() ? metric_from_field(session, mesh) : metric_from_file(session);
   if (!a.metric_out.empty()) write_metric(a.metric_out.string(), metric, session.context());

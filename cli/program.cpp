@@ -7,6 +7,7 @@
 #include "completion.h"
 #include "help.h"
 #include "manual.h"
+#include "mcp_server.h"
 #include "schema.h"
 #include "text.h"
 #include "units.h"
@@ -79,6 +80,7 @@ Program::Program() {
   app_.allow_windows_style_options(false);
   declare_commands();
   declare_helpers();
+  declare_server();
 }
 
 CLI::App* Program::add(const std::string& name, const std::string& help, const std::string& examples,
@@ -100,7 +102,7 @@ struct CommandRow {
   void (*run)(Session&);
 };
 /// Inputs that become a surface, and a mesh.
-constexpr const char *kFiles = "", *kMesh = "mesh";
+constexpr const char *kFiles = "", *kMesh = "mesh", *kTwoMeshes = "meshes";
 
 const std::vector<CommandRow>& command_rows() {
   static const std::vector<CommandRow> rows{
@@ -139,8 +141,18 @@ const std::vector<CommandRow>& command_rows() {
        "  octafront adapt in.mesh --metric in.sol -o out.mesh       other lengths in other directions\n"
        "  octafront adapt in.vtu --from u --elements 1e5 -o out.vtu    where a field bends\n"
        "  octafront adapt in.msh --size 1 --surface part.step -o out.msh    on the geometry that was meshed\n"
+       "  octafront adapt in.vtu --level-set u=1 -o out.vtu         a region below it, faces where u is 1\n"
        "  octafront adapt part.stl --size 1 -o finer.ply            a surface alone\n",
        kMesh, run_adapt},
+      {"move", "Move a mesh by a field, and mend it on the way: octafront move load.vtu --displacement u -o out.vtu",
+       "  octafront move load.vtu --displacement u -o out.vtu       with all other fields of load.vtu\n"
+       "  octafront move load.vtu --displacement u -o out.vtu --least-quality .3 --json history.json\n",
+       kMesh, run_move},
+      {"carry", "Bring fields of one mesh to another: octafront carry old.vtu new.msh -o new.vtu",
+       "  octafront carry old.vtu new.msh -o new.vtu                all fields of old.vtu\n"
+       "  octafront carry old.vtu new.vtu -o out.vtk --carry T,rho --json report.json\n"
+       "  octafront carry old.vtu new.vtu -o both.vtu --linear-elements    of second order in elements\n",
+       kTwoMeshes, run_carry},
       {"convert", "Another format, with all names and sets that it holds: in.msh -o out.inp",
        "  octafront convert in.med -o out.inp\n"
        "  octafront convert in.msh -o out.bdf --group load=box:0,0,0,1,1,0\n"
@@ -158,6 +170,12 @@ const std::vector<CommandRow>& command_rows() {
        "Surface or mesh; or several surfaces, a body each", run_check},
       {"report", "Show a mesh: a web page with it in 3D, and its numbers", "  octafront report part.msh -o part.html\n",
        kMesh, run_report},
+      {"picture", "Draw any input or mesh as a PNG: octafront picture part.msh -o part.png",
+       "  octafront picture part.step -o part.png --names           its faces by name\n"
+       "  octafront picture part.msh -o inside.png --cut y          cut open, coloured by quality\n"
+       "  octafront picture part.msh -o worst.png --worst           the worst element, near by\n"
+       "  octafront picture part.msh -o where.png --highlight patch_1    where a face is\n",
+       "Surface, mesh, CAD file, image or formula; or several files, a body each", run_picture},
   };
   return rows;
 }
@@ -169,6 +187,8 @@ void Program::declare_commands() {
     CLI::App* command = add(row.name, row.about, row.examples, row.run);
     if (row.input == std::string_view(kMesh))
       declare_mesh_input(*command, arguments_);
+    else if (row.input == std::string_view(kTwoMeshes))
+      declare_two_meshes(*command, arguments_);
     else
       declare_input(*command, arguments_, row.input);
     declare_options(*command, row.name, arguments_);
@@ -195,6 +215,34 @@ void Program::declare_helpers() {
   add("schema", "Print a JSON Schema of all options, and of the reports that --json writes",
       "  octafront schema > octafront.schema.json\n",
       [this](Session& session) { session.say_exactly(schema_of(app_).dump(2) + "\n"); });
+}
+
+void Program::declare_server() {
+  CLI::App* server = add("serve", "Answer programs, such as agents, until standard input ends: octafront serve --mcp",
+                         "  octafront serve --mcp --folder parts                      files below parts, nowhere else\n"
+                         "  octafront serve --mcp --max-elements 2e6 --seconds 600    what a call may take at most\n",
+                         [this](Session&) { serve(); });
+  server->add_flag("--mcp", speaks_mcp_, "By the Model Context Protocol, over standard input and output")->required();
+  server->add_option("--folder", folders_, "A folder that files may be in, links followed; may be repeated [this one]")
+      ->type_name("FOLDER")
+      ->allow_extra_args(false);
+  server->add_option("--max-elements", server_limits_.elements, "Elements of a mesh at most")
+      ->type_name("N")
+      ->check(CLI::PositiveNumber);
+  server->add_option("--seconds", server_limits_.seconds, "Seconds that a call may take, by the clock")
+      ->type_name("S")
+      ->check(CLI::PositiveNumber);
+  server->add_option("--megabytes", server_limits_.memory_mb, "Memory that a call may take")
+      ->type_name("MB")
+      ->check(CLI::PositiveNumber);
+  server->add_option("--threads", server_limits_.threads, "Threads at most; 0: all")
+      ->type_name("N")
+      ->check(CLI::Range(0, 1024));
+}
+
+void Program::serve() {
+  const Folders folders(folders_.empty() ? std::vector<std::filesystem::path>{"."} : folders_);
+  serve_mcp(app_, folders, server_limits_);
 }
 
 void Program::help(Session& session) const {

@@ -1,6 +1,7 @@
 #pragma once
 
 #include "arguments.h"
+#include "mcp_tools.h"
 #include "session.h"
 
 #include <functional>
@@ -26,12 +27,16 @@ class Program {
                 std::function<void(Session&)> run);
   void declare_commands();
   void declare_helpers();
+  void declare_server();
   void help(Session& session) const;
+  void serve();
 
   CLI::App app_{"Octafront: tetrahedral meshes from closed surfaces", "octafront"};
   Arguments arguments_;
   std::string topic_, group_, shell_;
-  bool wants_manual_ = false;
+  bool wants_manual_ = false, speaks_mcp_ = false;
+  std::vector<std::filesystem::path> folders_;
+  ToolLimits server_limits_;
   std::function<void(Session&)> chosen_;
 };
 

@@ -33,6 +33,8 @@ class Session {
   void say(const std::string& text) const;
   /// What coordinates of the mesh count; empty: not known.
   std::string unit;
+  /// Domain::densities.
+  std::vector<std::pair<std::string, double>> densities;
   /// Where x, y and z of the mesh point, as Image::frame has it; empty: not known.
   std::string frame;
 

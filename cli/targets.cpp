@@ -5,6 +5,7 @@
 #include <octafront/io.h>
 #include <octafront/named_groups.h>
 #include <octafront/share_files.h>
+#include <octafront/units.h>
 
 #include "fields.h"
 #include "ranks.h"
@@ -50,6 +51,15 @@ WriteOptions options_of(const Arguments& a, std::size_t i) {
   }
   if (!takes_parts(a, i)) options.parts = 0, options.partitioner = Partitioner::kCurve, options.split_files = false;
   return options;
+}
+
+/// Of an input without a unit nobody knows what they would be.
+std::vector<JobDensity> densities_of_job(const std::vector<std::pair<std::string, double>>& of_input,
+                                         const std::string& unit) {
+  std::vector<JobDensity> all;
+  if (const LengthUnit* length = unit_named(unit); length != nullptr)
+    for (const auto& [part, density] : of_input) all.push_back({part, density_with_newtons(density, *length)});
+  return all;
 }
 
 bool is_null(const std::filesystem::path& file) {
@@ -199,6 +209,7 @@ void write_mesh_targets(Session& session, const TetMesh& as_it_is, std::span<con
     WriteOptions options = options_of(a, i);
     options.materials = materials;
     if (options.unit.empty()) options.unit = session.unit.empty() ? a.unit : session.unit;
+    if (options.job) options.job->densities = densities_of_job(session.densities, options.unit);
     std::vector<std::string> notes = write_one(a.meshes[i], mesh, all_fields, options, session.context());
     session.warn("writing", group_notes);
     session.say_notes("writing", notes);

@@ -69,6 +69,11 @@ std::string time_left_in_words(double seconds) {
   return fmt::format(", {}:{:02} h left", s / 3600, s / 60 % 60);
 }
 
+/// For a program that reads them: "\x1fSTAGE\tFRACTION", a negative one where it is not known.
+void tell_progress_by_lines(std::string_view stage, double fraction) {
+  fmt::print(stderr, "\x1f{}\t{:.4f}\n", stage, fraction);
+}
+
 /// More threads than that only get in each other's way.
 int threads_at_most(int asked) {
   const int machine = static_cast<int>(std::max(1U, std::thread::hardware_concurrency()));
@@ -118,6 +123,11 @@ RunContext terminal_context(int threads, bool quiet) {
   RunContext context;
   context.cancel = &install_interrupt_handler();
   context.threads = threads_at_most(threads);
+  if (const char* wanted = std::getenv("OCTAFRONT_PROGRESS");
+      wanted != nullptr && std::string_view(wanted) == "lines") {
+    context.progress = tell_progress_by_lines;
+    return context;
+  }
   if (quiet || !can_wipe_lines()) return context;
   context.progress = [clock = StageClock()](std::string_view stage, double fraction) mutable {
     const std::string share = fraction >= 0 ? fmt::format(" {:3.0f} %", 100 * fraction) : " ...";

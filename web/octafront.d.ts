@@ -77,7 +77,7 @@ export interface Mesh {
   readonly report: Report;
   array(name: "points"): Promise<Float64Array>;
   array(
-    name: "tets" | "region" | "boundary" | "patch" | "source" | "interfaces" | "interface_patch" | "curve_edges" | "curve" | "mid_nodes" | "wide_cells" | "wide_faces",
+    name: "tets" | "region" | "boundary" | "patch" | "source" | "interfaces" | "interface_patch" | "curve_edges" | "curve" | "mid_nodes" | "high_nodes" | "wide_cells" | "wide_faces",
   ): Promise<Uint32Array>;
   names(list: "region_names" | "patch_names" | "curve_names"): Promise<string[]>;
   /** The files of a format that writes meshes; some formats have several. */

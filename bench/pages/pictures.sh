@@ -1,7 +1,7 @@
 #!/usr/bin/env bash
 # Makes the pictures of the README anew: three meshes, cut open, elements coloured by quality; and those of
-# docs/how/second-order.md, docs/use/complex.md and docs/use/cad.md (which take octafront-cad: scripts/quickstart.sh samples/bracket.step
-# builds it); and the worst ten of docs/measured/derived-status.md, each around its worst element.
+# docs/how/second-order.md, docs/use/complex.md, docs/use/picture.md and docs/use/cad.md (which take octafront-cad: scripts/quickstart.sh
+# samples/bracket.step builds it); and, by VTK, the worst ten of docs/measured/derived-status.md, each around its worst element.
 set -euo pipefail
 cd "$(dirname "$0")/../.."
 source scripts/lib/apt.sh
@@ -11,21 +11,27 @@ octafront=${1:-build/quickstart/cli/octafront}
 work=$(mktemp -d)
 trap 'rm -rf "$work"' EXIT
 
-picture() { # name, input, mesh options, render options
+picture() { # name, input, mesh options, options of octafront picture
   "$octafront" mesh "$2" -o "$work/$1.vtu" -q $3
-  xvfb-run -a /usr/bin/python3 bench/pages/render.py "$work/$1.vtu" "docs/images/$1.png" --size 900 700 $4
+  "$octafront" picture "$work/$1.vtu" -o "docs/images/$1.png" -q $4
 }
-picture bracket samples/bracket.stl "" "--cut 0,1,0 --up 0,0,1 --keep 0.5 --view 0.5,1,0.6"
-picture bunny models/clean/bunny00.off "--elements 60000" "--cut 0,0,1 --keep 0.5"
-picture fandisk models/clean/fandisk_large.off "--elements 60000" "--cut 0,1,0 --up 0,0,1 --keep 0.6 --view 0.45,1,0.5"
-picture first-order samples/torus_knot.ply "--size 4 --order 1" "--keep 1.1 --no-edges --size 700 560 --view 0.3,0.4,1"
-picture second-order samples/torus_knot.ply "--size 4 --order 2" "--keep 1.1 --no-edges --size 700 560 --view 0.3,0.4,1"
+picture bracket samples/bracket.stl "" "--size 900x700 --cut y --view 0.5,1,0.6"
+picture bunny models/clean/bunny00.off "--elements 60000" "--size 900x700 --cut z --up y"
+picture fandisk models/clean/fandisk_large.off "--elements 60000" "--size 900x700 --cut y=60% --view 0.45,1,0.5"
+picture first-order samples/torus_knot.ply "--size 4 --order 1" "--size 700x560 --edges none --bare --up y --view 0.3,0.4,1"
+picture second-order samples/torus_knot.ply "--size 4 --order 2" "--size 700x560 --edges none --bare --up y --view 0.3,0.4,1"
 bench/models/make-complexes.sh "$work/complexes"
-picture complex "$work/complexes/spheres.ply" "" "--regions --size 700 560 --keep 0.55"
-picture cad-assembly samples/assembly.step "--size 4" "--regions --size 900 640 --cut 0,1,0 --up 0,0,1 --keep 0.66 --view=0.8,1,0.7"
+picture complex "$work/complexes/spheres.ply" "" "--size 700x560 --color region --cut z=55% --up y"
+picture cad-assembly samples/assembly.step "--size 4" "--size 900x640 --color region --cut y=66% --view 0.8,1,0.7"
 "$octafront" mesh samples/bracket.step -o "$work/cad-sizes.vtu" -q --size 6 --size-of "color #d03030=1"
-xvfb-run -a /usr/bin/python3 bench/pages/render.py "$work/cad-sizes.vtu" docs/images/cad-sizes.png --size 900 640 --cut 0,1,0 --up 0,0,1 \
-  --keep 1.1 --view=0.35,-1,0.7
+"$octafront" picture "$work/cad-sizes.vtu" -o docs/images/cad-sizes.png -q --size 900x640 --view 0.35,-1,0.7
+
+# Those of docs/use/picture.md.
+"$octafront" picture samples/assembly.step -o docs/images/picture-names.png -q --size 900x675 --names
+"$octafront" picture "$work/bunny.vtu" -o docs/images/picture-cut.png -q --size 900x675 --cut x --up y
+"$octafront" mesh samples/bracket.step -o "$work/places.msh" -q --size 4
+"$octafront" picture "$work/places.msh" -o docs/images/picture-highlight.png -q --size 900x675 --highlight "bolt hole 1" --highlight wall
+"$octafront" picture "$work/fandisk.vtu" -o docs/images/picture-worst.png -q --size 900x675 --worst
 
 meshes=()
 for model in $(awk '/^## Sizes: 100 k/ { exit } /^\| [^ ]*\.[a-z]+ \|/ { print $2 }' docs/measured/derived-status.md); do

@@ -26,6 +26,7 @@ struct CadInfo {
     std::string color;            ///< "#ff8000"; empty: none
     std::string product;          ///< that it is an occurrence of; empty: the file says none
     std::string material;         ///< the same
+    double density = 0;           ///< kg/m3; 0: the file does not say
   };
   /// Faces of one name, which are one patch of a mesh.
   struct Patch {

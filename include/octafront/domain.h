@@ -196,6 +196,9 @@ struct Domain {
   /// Voxels of the image along i, j and k, as they were taken.
   std::array<std::uint32_t, 3> voxels = {0, 0, 0};
 
+  /// Of CAD: the regions that the file gives a density, by name, in kg/m3.
+  std::vector<std::pair<std::string, double>> densities = {};
+
   ContactChoice contacts = {};  ///< how parts meet: generate() opens contacts, or meshes parts one by one
 
   std::string unit = {};                   ///< that coordinates count, as far as that is known: of CAD

@@ -16,10 +16,10 @@ struct FieldsOfFile {
 };
 
 /// Reads what VTU, legacy VTK, Gmsh MSH, XDMF and MED have at points (VTU, VTK and MED up to 9 numbers each, else one)
-/// and in tetrahedra (one each) of a mesh that was read from `file`: all fields, or those with these names; not what
-/// numbers parts or names sets. Fields with values that are not finite, or not of all points or elements, are left out
-/// with a note; if they were named, InputError. Throws InputError also where the points or elements are not those of
-/// the mesh.
+/// and in tetrahedra (VTU and VTK up to 9 each, else one) of a mesh that was read from `file`: all fields, or those
+/// with these names; not what numbers parts or names sets. Fields with values that are not finite, or not of all points
+/// or elements, are left out with a note; if they were named, InputError. Throws InputError also where the points or
+/// elements are not those of the mesh.
 FieldsOfFile read_fields(const std::string& file, const TetMesh& mesh, const std::vector<std::string>& names = {},
                          const RunContext& context = {});
 

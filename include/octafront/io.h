@@ -208,7 +208,7 @@ struct FormatHolds {
   Keeps regions = Keeps::kNothing, patches = Keeps::kNothing, curves = Keeps::kNothing;
   bool interfaces = false;                                                             ///< patches inside
   bool node_sets = false, edge_sets = false, face_sets = false, element_sets = false;  ///< further sets, overlapping
-  bool second_order = false, doubles = true, binary = false;
+  bool second_order = false, high_order = false, doubles = true, binary = false;       ///< high: orders 3 and 4
   bool wide_cells = false;         ///< wedges and pyramids; in others they are tetrahedra
   bool curved_wide_cells = false;  ///< the same of second order
   bool cohesive = false;           ///< WriteOptions::cohesive and beams

@@ -5,13 +5,14 @@
 #include <cstdint>
 #include <optional>
 #include <string>
+#include <vector>
 
 namespace octafront {
 
-/// A run took, or would take, more than it may. CLI status 7; of memory 6.
+/// A run took, or would take, more than it may, or a file from where it may not. CLI status 7; of memory 6.
 class LimitError : public Error {
  public:
-  enum class Limit { kElements, kCpuSeconds, kMemory };
+  enum class Limit { kElements, kCpuSeconds, kMemory, kFolders };
   LimitError(Limit of, const std::string& what) : Error(what), limit(of) {}
   Limit limit;
 };
@@ -23,6 +24,9 @@ struct ProcessLimits {
   std::optional<double> cpu_seconds;  ///< from now on, > 0; none: no limit
   /// Tetrahedra of a mesh that is made or read, and triangles of a surface that is made, >= 1; none: no limit.
   std::optional<std::uint64_t> elements;
+  /// Files are read and written only in these folders and below, whoever names them: the user, or another file; empty:
+  /// anywhere.
+  std::vector<std::string> folders = {};
 };
 
 /// Sets the limits, once and before the work. Where memory ends, std::bad_alloc is thrown (on Linux; elsewhere only
@@ -51,6 +55,12 @@ double cpu_seconds_left();
 
 /// To be called when such a program has ended: its seconds count from now on.
 void count_ended_programs();
+
+/// Whether a file, which need not exist, lies in one of the folders or below, once links and ".." are followed.
+bool lies_in(const std::string& file, const std::vector<std::string>& folders);
+
+/// Throws LimitError for a file that lies in none of the folders of the limits: to be called by all that opens files.
+void require_in_folders(const std::string& file);
 
 /// Throws LimitError once they are spent.
 void check_cpu_seconds();

@@ -62,6 +62,9 @@ struct Bounds {
 /// logarithms of those in which all edges of an element are, by volume.
 std::vector<Metric> implied(const TetMesh& mesh);
 
+/// The lengths that the mesh has: at each point the mean of the edges there, in all directions.
+std::vector<Metric> of_edges(const TetMesh& mesh);
+
 /// The coarsest metric at each place that asks for no longer elements than both, in any of the directions in which both
 /// are diagonal (simultaneous reduction). Both have one entry per place.
 std::vector<Metric> intersected(std::span<const Metric> a, std::span<const Metric> b);

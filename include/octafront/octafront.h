@@ -4,6 +4,7 @@
 
 #include <octafront/adapt.h>
 #include <octafront/cad.h>
+#include <octafront/carry.h>
 #include <octafront/complex.h>
 #include <octafront/domain.h>
 #include <octafront/error.h>
@@ -16,14 +17,17 @@
 #include <octafront/image_surface.h>
 #include <octafront/improve_existing.h>
 #include <octafront/io.h>
+#include <octafront/level_set.h>
 #include <octafront/limits.h>
 #include <octafront/mend.h>
 #include <octafront/mesh_field.h>
 #include <octafront/metric.h>
+#include <octafront/move.h>
 #include <octafront/named_groups.h>
 #include <octafront/open_cavity_error.h>
 #include <octafront/option_table.h>
 #include <octafront/options.h>
+#include <octafront/picture.h>
 #include <octafront/poly_mesh.h>
 #include <octafront/quality.h>
 #include <octafront/ranks.h>

@@ -90,8 +90,9 @@ void octafront_surface_set_voxel(octafront_surface* surface, double spacing);
 
 /** Arrays of a mesh: points (F64 x 3), tets (U32 x 4), region (U32 x 1), boundary (U32 x 3), patch, source (U32 x 1),
  * interfaces (U32 x 3), interface_patch (U32 x 1), curve_edges (U32 x 2), curve (U32 x 1), mid_nodes (U32 x 6),
- * wide_cells (U32 x 8: of wedges and pyramids the first tet, the number of tets, six nodes), wide_faces (U32 x 5: of
- * their quadrilaterals the first face, four nodes), split_faces (U32 x 7: three corners behind, their partners in
+ * high_nodes (U32 x 1: of order 3 and 4 the 16 or 31 nodes of each tet behind its corners, as octafront::TetMesh has
+ * them), wide_cells (U32 x 8: of wedges and pyramids the first tet, the number of tets, six nodes), wide_faces (U32 x
+ * 5: of their quadrilaterals the first face, four nodes), split_faces (U32 x 7: three corners behind, their partners in
  * front, the patch in front), opened_contacts (U32 x 3: two patches that lie on each other, and 1 if their triangles
  * are the same, else 0), periods (F64 x 3: of a periodic cell the translations), period_rotations (F64 x 9: the
  * matrices of periods, row by row; none if all are translations), periodic_nodes (U32 x 3: the number of a period, a
@@ -299,6 +300,38 @@ octafront_job* octafront_adapt_surface(const octafront_surface* surface, const o
  * mesh has points), or null. The mesh may be null where the task needs none. All must live until the job has ended. */
 octafront_job* octafront_metrics(const octafront_mesh* mesh, const char* json, const double* values,
                                  const double* others, size_t n, double* out, int threads);
+/** LevelSet of octafront/level_set.h: a value at each point of a mesh, and that of the surface. */
+typedef struct {
+  const char* name;
+  const double* values;
+  double level;
+} octafront_level_set;
+/** -> mesh: cut_along() of octafront/level_set.h, by the options' least_piece. The report has "level_sets". Level sets,
+ * names and values must live until the job has ended. */
+octafront_job* octafront_cut(const octafront_mesh* mesh, const octafront_level_set* level_sets, size_t count,
+                             const octafront_options* options, int threads);
+/** Values at the points of a mesh, or of its elements: `components` numbers for each. */
+typedef struct {
+  const char* name; /**< in reports */
+  int of_elements;
+  size_t components;
+  const double* values; /**< on the old mesh */
+  double* out;          /**< has room for those of the new mesh */
+} octafront_field;
+/** carry_fields() of octafront/carry.h, by the options' carry. `adapted` is 1 if octafront_adapt() or
+ * octafront_improve() made the mesh `now` of `before`: then values go on linearly outside. The report has "carry" and
+ * "carried". Fields, names and values must live until the job has ended. */
+octafront_job* octafront_carry(const octafront_mesh* before, const octafront_mesh* now, int adapted,
+                               const octafront_field* fields, size_t count, const octafront_options* options,
+                               int threads);
+/** -> mesh: move_mesh() of octafront/move.h, by three numbers for each point. The report has "history". The fields,
+ * whose `out` is not looked at, are on the new mesh what octafront_mesh_field() gives. All must live until the job has
+ * ended.
+ */
+octafront_job* octafront_move(const octafront_mesh* mesh, const double* displacement, const octafront_field* fields,
+                              size_t count, const octafront_options* options, int threads);
+/** Of what octafront_move() left: the values of the i-th field that it was given, a row for each point or element. */
+int octafront_mesh_field(const octafront_mesh* mesh, size_t i, octafront_array* values);
 /** -> mesh: improve_existing(); `ground`, which may be null: the surface that the boundary slides on. */
 octafront_job* octafront_improve(const octafront_mesh* mesh, const octafront_surface* ground,
                                  const octafront_options* options, int threads);

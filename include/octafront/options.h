@@ -258,6 +258,23 @@ struct AdaptOptions {
   /// their places; of sets RequiredVertices, RequiredEdges, RequiredTriangles, RequiredTetrahedra and Corners, as MEDIT
   /// has them, in any case. Lengths grow from what stays.
   std::string keep;
+  /// Of a mesh that is cut along level sets (octafront/level_set.h): LevelSetOptions::least_piece; >= 0.
+  double least_piece = 0;
+};
+
+/// How fields go from one mesh to another (octafront/carry.h).
+struct CarryOptions {
+  /// Values of elements vary linearly inside the old elements, by least squares of what is around, limited such that no
+  /// new extremes come: of second order where they are smooth. Else they are constant there: of first order.
+  bool linear_elements = false;
+  /// Where the bodies differ, what the integral over a region lacks is spread over it. Else values stay the means over
+  /// what is shared, and the integral changes with the volume: for what is no density, such as a modulus.
+  bool keep_integrals = true;
+};
+
+/// How a mesh is moved (octafront/move.h).
+struct MoveOptions {
+  double least_quality = 0.2;  ///< beta (3 r / R) below which elements are mended between steps, in (0, 0.6]
 };
 
 /// What a mesh must keep: one that does not is not handed out, RequirementError says what it is like. Looked at last,
@@ -280,6 +297,8 @@ struct Options {
   VolumeOptions volume;
   ImproveOptions improve;
   AdaptOptions adapt;
+  CarryOptions carry;
+  MoveOptions move;
   RequireOptions require;
   /// Names of patches inside (sheets, walls between regions), separated by commas, along which the mesh is opened:
   /// split_patches() of octafront/split.h.

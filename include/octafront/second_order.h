@@ -21,10 +21,12 @@ struct SecondOrderSummary {
   std::uint64_t straight = 0;  ///< inside, or where the surface is flat
   std::uint64_t moved = 0;     ///< corners on the boundary that moved from the input's triangles to the smooth surface
   std::uint64_t held = 0;      ///< those that could not, or only on the way
-  double largest_bend = 0;     ///< distance of a mid-side node from the middle of its edge, in parts of the edge
-  /// Over all elements: the least of the twenty Bernstein coefficients of the Jacobian's determinant over the
-  /// determinant of the element with straight edges. 1: straight; above 0: valid (T. Toulorge, C. Geuzaine,
-  /// J.-F. Remacle, J. Lambrechts, "Robust untangling of curvilinear meshes", 2013).
+  std::uint64_t eased_faces = 0;  ///< of orders 3 and 4: whose inner nodes went back, for the same reason
+  double largest_bend = 0;        ///< distance of a mid-side node from the middle of its edge, in parts of the edge
+  /// Over all elements: the least (of orders 3 and 4 where an element is bent much: of the parts that it is halved
+  /// into) of the Bernstein coefficients of the Jacobian's determinant over the determinant of the element with
+  /// straight edges. 1: straight; above 0: valid (T. Toulorge, C. Geuzaine, J.-F. Remacle, J. Lambrechts, "Robust
+  /// untangling of curvilinear meshes", 2013).
   double least_scaled_jacobian = 1;
   TetIndex least_tet = kNone;
 
@@ -43,7 +45,14 @@ struct SecondOrderSummary {
 SecondOrderSummary make_second_order(TetMesh& mesh, const SurfaceMesh* surface = nullptr, double feature_angle = 40,
                                      const RunContext& context = no_context());
 
-/// Drops the mid-side nodes.
+/// The same of order 2, 3 or 4 (tet10, tet20, tet35). Nodes lie where the barycentric coordinates are multiples of
+/// 1 / order, those of boundary and interfaces on the smooth surface; elements beside them follow by the polynomials
+/// that continue edges and faces. Each element is proven valid (check_jacobians()). Orders 3 and 4 are not for meshes
+/// with boundary layers or periods. Throws OptionError for these and another order.
+SecondOrderSummary make_curved(TetMesh& mesh, int order, const SurfaceMesh* surface = nullptr,
+                               double feature_angle = 40, const RunContext& context = no_context());
+
+/// Drops all nodes but the corners.
 void make_linear(TetMesh& mesh);
 
 /// An element whose Jacobian is not proven positive.
@@ -53,17 +62,19 @@ struct InvalidElement {
   double scaled_jacobian = 0;  ///< its least coefficient; see SecondOrderSummary
 };
 
-/// What the elements of a second-order mesh are, by the coordinates as they stand.
+/// What the elements of a mesh of order 2 to 4 are, by the coordinates as they stand.
 struct JacobianSummary {
   std::uint64_t invalid = 0;
+  std::uint64_t undecided = 0;        ///< of these; of orders 3 and 4, where neither was proven
   std::vector<InvalidElement> first;  ///< the first ten of them
   double least_scaled_jacobian = 1;
   TetIndex least_tet = kNone;
 };
 
-/// Looks at each element of a second-order mesh: invalid if one of the twenty coefficients is not positive by exact
-/// sign. (Positive coefficients are enough for a valid element, and nearly needed: subdivision would acquit a few
-/// more.) Of a linear mesh all are valid. About .4 s per million elements and thread.
+/// Looks at each element of a mesh of order 2 to 4. At order 2 it is invalid if one of the twenty coefficients is not
+/// positive by exact sign. (Positive coefficients are enough for a valid element, and nearly needed: subdivision would
+/// acquit a few more.) At orders 3 and 4 the same of 84 and 220, and the element is halved where some are not positive.
+/// Of a linear mesh all are valid. About .4 s per million elements and thread at order 2.
 JacobianSummary check_jacobians(const TetMesh& mesh, const RunContext& context = no_context());
 
 }  // namespace octafront

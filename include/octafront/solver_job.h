@@ -67,6 +67,12 @@ struct JobCoupling {
   bool is_rigid = true;         ///< they keep their shape; else they share its forces and it follows them, on average
 };
 
+/// What the input says that a part weighs: of materials without a density, and of the placeholder.
+struct JobDensity {
+  std::string part;  ///< its region, by name
+  double value = 0;  ///< > 0, in the units of the job: of CAD by density_with_newtons() of octafront/units.h
+};
+
 struct SolverJob {
   std::vector<JobMaterial> materials;
   std::vector<JobPart> parts;
@@ -76,6 +82,7 @@ struct SolverJob {
   std::vector<JobContact> contacts;
   std::vector<JobPretension> pretensions;
   std::vector<JobCoupling> couplings;
+  std::vector<JobDensity> densities = {};
   std::optional<Vec3> gravity = {};  ///< an acceleration of all parts; their materials need a density
 };
 

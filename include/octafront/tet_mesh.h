@@ -109,7 +109,13 @@ struct TetMesh {
   /// Second order: the mid-side nodes of each tet in the order of kTetEdges, shared by the tets at an edge. They are
   /// points like others, behind all corners. Empty: the mesh is linear.
   std::vector<std::array<VertexIndex, 6>> mid_nodes;
-  std::vector<NamedSet> sets;  ///< further named parts: what a user asked for, or a file had
+  /// Order 3 or 4: the nodes of each tet behind its corners, one tet after the other; they lie where the barycentric
+  /// coordinates are multiples of 1/order: of each edge of kTetEdges those from its first end to its second, of each
+  /// face of kTetFaces those inside (of order 4 the one nearest to its first corner first), at order 4 one in the
+  /// middle. Shared by the tets at an edge or face; points like others, behind all corners. Then `mid_nodes` is empty.
+  std::vector<VertexIndex> high_nodes;
+  std::uint32_t high_order = 0;  ///< 3 or 4; 0: there are none
+  std::vector<NamedSet> sets;    ///< further named parts: what a user asked for, or a file had
   /// Ascending. Files whose formats have wedges and pyramids get these in the place of their tetrahedra; each
   /// quadrilateral between two of them or at the boundary is whole on both sides. Empty: tetrahedra only.
   std::vector<WideCell> wide_cells;
@@ -129,6 +135,12 @@ struct TetMesh {
   std::vector<OpenedContact> opened_contacts;  ///< by their first patches
 
   bool is_second_order() const { return !mid_nodes.empty(); }
+  /// 1 to 4.
+  int order() const { return high_order > 0 ? static_cast<int>(high_order) : is_second_order() ? 2 : 1; }
+  /// So many of `high_nodes` are each tet's.
+  std::size_t high_nodes_per_tet() const {
+    return high_order == 0 ? 0 : (high_order + 1) * (high_order + 2) * (high_order + 3) / 6 - 4;
+  }
   /// How many there are of what sets of this kind are made of.
   std::size_t count(NamedSet::Kind kind) const {
     switch (kind) {

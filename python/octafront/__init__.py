@@ -13,10 +13,11 @@ import inspect as _inspect
 import json as _json
 import os as _os
 
-from . import _complexes, _fields, errors, metrics
+from . import _complexes, _fields, _level_sets, errors, metrics
 from ._images import is_file as _is_file, surface_of_image as _surface_of_image
 from ._intake import opened as _opened
 from ._jobs import Job as _Job
+from ._fields import CarriedFields
 from ._library import bytes_of as _bytes_of, call as _call
 from ._mesh import Checked, Mesh, mesh_of as _mesh_of
 from ._options import Settings as _Settings, takes_options as _takes_options
@@ -26,9 +27,9 @@ from ._surface import OUTSIDE, Surface, surface_of as _surface_of
 from .errors import (Cancelled, Error, InputError, InternalError, MeshingError, OpenCavityError, OptionError, OutputError)
 
 __version__ = _call("version").decode()
-__all__ = ["Cancelled", "Checked", "Error", "InputError", "InternalError", "Mesh", "MeshingError", "OUTSIDE",
-           "OpenCavityError", "OptionError", "OutputError", "SizeField", "Surface", "adapt", "check", "complex_of_walls",
-           "errors", "formats", "image_surface", "improve", "join_bodies", "mend", "mesh", "mesh_file", "mesh_image", "metrics", "read",
+__all__ = ["Cancelled", "CarriedFields", "Checked", "Error", "InputError", "InternalError", "Mesh", "MeshingError", "OUTSIDE",
+           "OpenCavityError", "OptionError", "OutputError", "SizeField", "Surface", "adapt", "carry", "check", "complex_of_walls",
+           "errors", "formats", "image_surface", "improve", "join_bodies", "mend", "mesh", "mesh_file", "mesh_image", "metrics", "move", "read",
            "repair", "size_field", "surface"]
 
 
@@ -186,11 +187,12 @@ def size_field(points, triangles=None, **keywords):
 
 
 @_takes_options("improve")
-def improve(mesh, *, surface=None, **keywords):
+def improve(mesh, *, surface=None, fields=None, **keywords):
     """The same mesh with better elements: a new Mesh. report["before"] is the quality of the old one.
 
     mesh: a valid Mesh of any tool, the name of its file, or an object of meshio, PyVista or VTK. Regions, patches, names and sets stay. The boundary stays
     too, triangle for triangle, unless `surface` is given, the Surface on which it may slide (or the name of its file).
+    fields: {name: array}, go along as those of adapt().
 
     No worse by least beta, smallest and largest dihedral angle. Raises OptionError, InputError (the first defect of the
     mesh, or that the boundary does not lie on the surface), MeshingError, Cancelled.
@@ -199,15 +201,22 @@ def improve(mesh, *, surface=None, **keywords):
     """
     settings = _Settings("improve", "improve", keywords)
     old = Mesh.read(mesh) if _is_file(mesh) else Mesh.of(mesh)
+    values = _fields.fields_on(old, fields)
     ground = Surface.read(surface) if _is_file(surface) else surface and _surface_of(surface, None)
     job = _Job("improve", old._handle, ground and ground._handle, settings.options, settings.threads,
                **settings.functions())
     report = job.run()
-    return Mesh._of(job.take("mesh"), report)
+    new = Mesh._of(job.take("mesh"), report)
+    _fields.take_along(old, new, values, settings)
+    return new
+
+
+_SIZES_OF_ADAPT = {"size", "size_field", "size_of", "size_near", "elements", "curvature", "gap", "through", "regions", "point_sizes",
+                   "automatic_factor", "interior", "chord_error", "feature_elements", "facets"}
 
 
 @_takes_options("adapt")
-def adapt(mesh, *, sizes=None, metric=None, fields=None, surface=None, **keywords):
+def adapt(mesh, *, sizes=None, metric=None, fields=None, surface=None, level_sets=None, **keywords):
     """The mesh changed until its edges are as long as the sizes want: a new Mesh. report["fit"] says how well it fits.
 
     mesh: a valid Mesh of any tool, the name of its file, or an object of meshio, PyVista or VTK. Its boundary stays on the smooth surface that it stands
@@ -223,8 +232,12 @@ def adapt(mesh, *, sizes=None, metric=None, fields=None, surface=None, **keyword
     surface: what walls stand for instead, where it is near them: a Surface, the name of its file, of a CAD file, whose true
         geometry they go to, or (points, triangles). It need not be closed.
     fields: {name: array}, values at the points, (n,) or (n, k), or of the tetrahedra, (m,) or (m, k): mesh.fields of the
-    new mesh has them there. At points linear in the old elements, bit for bit where a point stays; of elements such that
-    the sum of value times volume in each region stays.
+    new mesh has them there, its report what they came to before and after, as carry() has it. At points linear in the old
+    elements, bit for bit where a point stays; of elements such that the sum of value times volume in each region stays.
+
+    level_sets: {name: values at the points, or (values, level)}: the surface where they have the level [0] becomes faces, a
+    region of the name below it, a patch NAME_surface; the first that holds a place names its region. Sizes stay unless
+    others are asked for. report["level_sets"] says what was cut; old_points and old_tets are then of the mesh that was cut.
 
     The mesh made tells by old_points and old_tets what its points and tetrahedra were in the old one.
 
@@ -236,6 +249,11 @@ def adapt(mesh, *, sizes=None, metric=None, fields=None, surface=None, **keyword
     """
     old = read(mesh) if _is_file(mesh) else mesh if isinstance(mesh, Surface) else Mesh.of(mesh)
     is_surface = isinstance(old, Surface)
+    if level_sets:
+        if is_surface or sizes is not None and "size_field" in keywords:
+            raise OptionError("`level_sets` are for meshes of tetrahedra, beside one field of sizes")
+        if sizes is None and metric is None and not set(keywords) & _SIZES_OF_ADAPT:
+            sizes = _level_sets.lengths_at_points(old)
     if sizes is not None:
         if "size_field" in keywords:
             raise OptionError("`sizes` and `size_field` are two fields of sizes; give one")
@@ -246,7 +264,13 @@ def adapt(mesh, *, sizes=None, metric=None, fields=None, surface=None, **keyword
         if not isinstance(keywords.get(names, ""), str):
             keywords[names] = ";".join(keywords[names])
     settings = _Settings("adapt", "adapt", keywords)
-    values = {name: _fields.field_on(old, name, array) for name, array in dict(fields or {}).items()}
+    values = {} if is_surface else _fields.fields_on(old, fields)
+    report_of_cut = {}
+    if level_sets:
+        whole, old = old, _level_sets.cut(old, level_sets, settings, Mesh._of)
+        values, report_of_cut = _level_sets.carried_to(whole, old, values, settings), old.report
+        if metric is not None:
+            metric = _level_sets.carried_to(whole, old, {"metric": _fields.field_on(whole, "metric", metric)}, settings)["metric"]
     if isinstance(surface, tuple):
         surface = _surface_of(*surface)
     ground = Surface.read(surface) if _is_file(surface) else None if surface is None else _surface_of(surface, None)
@@ -261,8 +285,49 @@ def adapt(mesh, *, sizes=None, metric=None, fields=None, surface=None, **keyword
         job = metrics._adapting("adapt_to_metric", old, ground, metric, sizes, settings)
     report = job.run()
     new = Mesh._of(job.take("mesh"), report)
-    new.fields = {name: _fields.carried(old, new, array) for name, array in values.items()}
+    _fields.take_along(old, new, values, settings)
+    new.report.update(report_of_cut)
     return new
+
+
+@_takes_options("carry")
+def carry(old, new, fields, **keywords):
+    """Fields of one mesh on another, of the same body or of one that differs: {name: array}, a CarriedFields, whose
+    `report` has of each field the integral, least and greatest value before and after ("carried"), and how the meshes lie
+    to each other ("carry").
+
+    old, new: valid Meshes, names of files, or objects of meshio, PyVista or VTK.
+    fields: {name: array}, values at the points of the old one, (n,) or (n, k), or of its tetrahedra, (m,) or (m, k).
+
+    At points linear in the old element that holds the point, outside the value at the nearest place of the old boundary.
+    Of elements conservative, by intersection: the sum of value times volume stays in each region, and no value leaves the
+    range that its region had, as long as the region's volume allows that.
+
+    Raises OptionError, InputError (the first defect of a mesh), Cancelled.
+
+    >>> octafront.carry(old, new, {"T": temperature})["T"]
+    """
+    settings = _Settings("carry", "carry", keywords)
+    old, new = (Mesh.read(mesh) if _is_file(mesh) else Mesh.of(mesh) for mesh in (old, new))
+    return _fields.carried(old, new, _fields.fields_on(old, fields), settings, False)
+
+
+@_takes_options("move")
+def move(mesh, displacement, *, fields=None, **keywords):
+    """The mesh moved by a displacement, (n, 3) at its points, and mended on the way: a new Mesh. report["history"] has the
+    steps: which part of the motion was done, whether the mesh was "moved", "improved" or "adapted", and how good it is.
+
+    mesh: a valid Mesh, the name of its file, or an object of meshio, PyVista or VTK. Names, sets and `fields`, {name: array}
+    as of adapt(), go along: mesh.fields of the new mesh. Steps are as long as elements stay positive and sound; below
+    `least_quality` they are improved, then the mesh is adapted to the lengths that it had.
+
+    Raises OptionError, InputError, MeshingError (the body would touch itself: where, and how far it can go), Cancelled.
+
+    >>> octafront.move(mesh, 0.1 * u, fields={"T": temperature}).fields["T"]
+    """
+    settings = _Settings("move", "move", keywords)
+    old = Mesh.read(mesh) if _is_file(mesh) else Mesh.of(mesh)
+    return _fields.moved(old, displacement, _fields.fields_on(old, fields), settings, Mesh._of)
 
 
 def repair(points, triangles=None):

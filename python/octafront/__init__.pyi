@@ -138,12 +138,17 @@ class Mesh:
              job: dict[str, Any] | Path | None = None) -> list[str]: ...
     def adapt(self, *, sizes: npt.ArrayLike | None = None, metric: npt.ArrayLike | None = None,
               **keywords: Any) -> Mesh: ...
+    def move(self, displacement: npt.ArrayLike, *, fields: Mapping[str, npt.ArrayLike] | None = None,
+             **keywords: Any) -> Mesh: ...
     def save_page(self, path: Path) -> None: ...
     def boundary(self) -> Surface: ...
     def to_pyvista(self) -> Any: ...
     def to_meshio(self) -> Any: ...
     def plot(self, clip: Sequence[float] | None = (1, 0, 0), **keywords: Any) -> Any: ...
     def __len__(self) -> int: ...
+
+class CarriedFields(dict[str, Floats]):
+    report: dict[str, Any]
 
 class _OfTrimesh(Protocol):
     @property
@@ -662,6 +667,7 @@ def size_field(points: npt.ArrayLike | Input, triangles: npt.ArrayLike | None = 
     progress: Progress | None = None,
     threads: int = 0) -> SizeField: ...
 def improve(mesh: Tets | Path, *, surface: Body | Path | None = None,
+    fields: Mapping[str, npt.ArrayLike] | None = None,
     feature_angle: float | None = None,
     improve: Literal['none', 'paper', 'fast', 'default', 'best'] = 'default',
     objective: Literal['balanced', 'beta', 'min-dihedral', 'max-dihedral', 'mean-ratio', 'solver'] = 'balanced',
@@ -671,15 +677,29 @@ def improve(mesh: Tets | Path, *, surface: Body | Path | None = None,
     improve_time: float | None = None,
     order: int = 1,
     no_bridging: bool = False,
+    linear_elements: bool = False,
+    free_integrals: bool = False,
     require_volume: float | None = None,
     require_angle: float | None = None,
     after_pass: Callable[[str, dict[str, Any]], object] | None = None,
+    progress: Progress | None = None,
+    threads: int = 0) -> Mesh: ...
+def carry(old: Tets | Path, new: Tets | Path, fields: Mapping[str, npt.ArrayLike], *,
+    linear_elements: bool = False,
+    free_integrals: bool = False,
+    progress: Progress | None = None,
+    threads: int = 0) -> CarriedFields: ...
+def move(mesh: Tets | Path, displacement: npt.ArrayLike, *, fields: Mapping[str, npt.ArrayLike] | None = None,
+    linear_elements: bool = False,
+    free_integrals: bool = False,
+    least_quality: float = 0.2,
     progress: Progress | None = None,
     threads: int = 0) -> Mesh: ...
 @overload
 def adapt(mesh: Tets | Path, *, sizes: npt.ArrayLike | None = None, metric: npt.ArrayLike | None = None,
     fields: Mapping[str, npt.ArrayLike] | None = None,
     surface: Body | Path | tuple[npt.ArrayLike, npt.ArrayLike] | None = None,
+    level_sets: Mapping[str, npt.ArrayLike | tuple[npt.ArrayLike, float]] | None = None,
     size: float | str | SizeFunction | SizeField | None = None,
     elements: int | None = None,
     curvature: float | None = None,
@@ -700,6 +720,9 @@ def adapt(mesh: Tets | Path, *, sizes: npt.ArrayLike | None = None, metric: npt.
     only: str | Sequence[str] = '',
     halo: int = 2,
     keep: str | Sequence[str] = '',
+    least_piece: float = 0.0,
+    linear_elements: bool = False,
+    free_integrals: bool = False,
     require_volume: float | None = None,
     require_angle: float | None = None,
     require_size: float | None = None,

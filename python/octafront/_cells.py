@@ -12,8 +12,13 @@ _SECOND = {"tetra": "tetra10", "pyramid": "pyramid13", "wedge": "wedge15"}
 _TET_EDGES = [(0, 1), (0, 2), (0, 3), (1, 2), (1, 3), (2, 3)]
 # Where the mid-side nodes of a tetrahedron stand in VTK and meshio, as columns of `mid_nodes`.
 VTK_MIDS = [0, 3, 1, 2, 4, 5]
+# The same of orders 3 and 4, as columns of `high_nodes`.
+_VTK_HIGH = {3: [0, 1, 6, 7, 3, 2, 4, 5, 8, 9, 10, 11, 14, 12, 13, 15],
+             4: [0, 1, 2, 9, 10, 11, 5, 4, 3, 6, 7, 8, 12, 13, 14, 15, 16, 17, 24, 25, 26,
+                 19, 20, 18, 21, 22, 23, 27, 28, 29, 30]}
+_HIGH_TETRA = "VTK_LAGRANGE_TETRAHEDRON"
 # VTK's types; the first triangle of its wedges faces outward.
-VTK_TYPES = {"tetra": 10, "pyramid": 14, "wedge": 13, "tetra10": 24, "pyramid13": 27, "wedge15": 26}
+VTK_TYPES = {"tetra": 10, "pyramid": 14, "wedge": 13, "tetra10": 24, "pyramid13": 27, "wedge15": 26, _HIGH_TETRA: 71}
 VTK_ORDERS = {"wedge": [0, 2, 1, 3, 5, 4], "wedge15": [0, 2, 1, 3, 5, 4, 8, 7, 6, 11, 10, 9, 12, 14, 13]}
 
 # Cells of one kind, by meshio's name: their nodes, and the first tetrahedron or face of each.
@@ -80,12 +85,14 @@ def used_points(points, lists):
 
 
 def _name(mesh, name):
-    return name if mesh.order == 1 else _SECOND[name]
+    return name if mesh.order == 1 else _SECOND[name] if mesh.order == 2 else _HIGH_TETRA
 
 
 def _with_mids(mesh, name, nodes, middles):
     if mesh.order == 1:
         return nodes
+    if mesh.order > 2:
+        return np.hstack([nodes, mesh.high_nodes[:, _VTK_HIGH[mesh.order]]])
     if name == "tetra":
         return np.hstack([nodes, mesh.mid_nodes[:, VTK_MIDS]])
     return np.column_stack([nodes, *(middles(nodes[:, i], nodes[:, j]) for i, j in _EDGES[name])])

@@ -14,7 +14,7 @@ from ._surface import _or_zeros, array_of, column_of, points_of, rows_of, wanted
 
 _KINDS = ["nodes", "edges", "faces", "elements"]
 _ARRAYS = ["points", "tets", "region", "boundary", "patch", "source", "interfaces", "interface_patch", "curve_edges",
-           "curve", "mid_nodes", "wide_cells", "wide_faces", "split_faces", "opened_contacts", "periods",
+           "curve", "mid_nodes", "high_nodes", "wide_cells", "wide_faces", "split_faces", "opened_contacts", "periods",
            "period_rotations", "periodic_nodes"]
 _LISTS = ["region_names", "patch_names", "curve_names"]
 
@@ -78,7 +78,7 @@ class Mesh:
     def _take(self, handle, report, sizes=None):
         self._handle, self._quality, self._sizes = handle, report.get("quality"), sizes
         self.report = report
-        self.fields = {}  # of adapt()
+        self.fields = {}  # of adapt() and improve()
 
     @classmethod
     def _of(cls, address, report, sizes=None):
@@ -118,6 +118,14 @@ class Mesh:
         return found if len(found) else None
 
     @property
+    def high_nodes(self):
+        """Of order 3 and 4: (m, 16) or (m, 31) uint32, the nodes of each tet behind its corners, where the barycentric coordinates
+        are multiples of 1/order: of the edges 01 02 03 12 13 23 from the first end on, of the faces 123 032 013 021 (of
+        order 4 the one nearest to the first corner first), at order 4 one inside. None: there are none."""
+        found = self._handle.view("high_nodes")
+        return found.reshape(len(self.tets), -1) if len(found) else None
+
+    @property
     def wedges(self):
         """(w, 6) uint32, corners of the wedges that boundary layers are, three of `tets` each: a triangle, counter-clockwise
         seen from the other one, and that one above it."""
@@ -150,7 +158,9 @@ class Mesh:
 
     @property
     def order(self):
-        """1: linear elements; 2: of second order."""
+        """1: linear elements; 2 to 4: of that order."""
+        if self.high_nodes is not None:
+            return 3 if self.high_nodes.shape[1] == 16 else 4
         return 1 if self.mid_nodes is None else 2
 
     @property
@@ -314,6 +324,11 @@ class Mesh:
         """octafront.adapt() of this mesh: a new Mesh that fits other sizes, or a metric."""
         import octafront
         return octafront.adapt(self, sizes=sizes, metric=metric, **keywords)
+
+    def move(self, displacement, *, fields=None, **keywords):
+        """octafront.move() of this mesh: a new Mesh whose points have gone by (n, 3) displacements."""
+        import octafront
+        return octafront.move(self, displacement, fields=fields, **keywords)
 
     def save_page(self, path):
         """Writes a web page that shows the mesh in 3D and its report: one file, which opens without a network. Elements can

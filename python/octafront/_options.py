@@ -58,10 +58,10 @@ _FURTHER = [(name, "mesh surface size", text) for name, text in _OF_INTAKE] + [
      "What the input's coordinates count, for lengths with a unit of their own, such as size=\"2mm\": um, mm, cm, m, in or "
      "ft; files may say it. Of CAD files the mesh counts it, too, and lengths without a unit [mm]"),
     ("after_pass", "mesh improve", "after_pass(name, worst), told of every pass of improvement"),
-    ("progress", "mesh surface size improve adapt",
+    ("progress", "mesh surface size improve adapt carry move",
      "progress(phase, fraction), told how far the run is; fraction is None where it is unknown. What returns False ends "
      "the run with Cancelled"),
-    ("threads", "mesh surface size improve adapt", "Threads at most; 0: all. The result is the same"),
+    ("threads", "mesh surface size improve adapt carry move", "Threads at most; 0: all. The result is the same"),
     ("comm", "mesh", "A communicator of mpi4py, such as MPI.COMM_WORLD: its processes make the mesh together, all call "
      "this with the same arguments, and all get the same mesh, the one that a process alone gets"),
 ]
@@ -82,7 +82,7 @@ def _further(task):
 
 @functools.lru_cache(maxsize=None)
 def keywords_of(task):
-    """All keywords of a task: "mesh", "surface", "size", "improve" or "adapt"."""
+    """All keywords of a task: "mesh", "surface", "size", "improve", "adapt", "carry" or "move"."""
     return [row["name"] for row in _rows(task)] + [name for name, _ in _further(task)]
 
 
@@ -190,7 +190,7 @@ def _is_file(value):
 def _is_known(function, task, name):
     if name in keywords_of(task):
         return True
-    others = [other for other in ("mesh", "surface", "size", "improve", "adapt") if name in keywords_of(other)]
+    others = [other for other in ("mesh", "surface", "size", "improve", "adapt", "carry", "move") if name in keywords_of(other)]
     near = difflib.get_close_matches(name, keywords_of(task), n=1, cutoff=0.6)
     hint = f"; did you mean '{near[0]}'?" if near else ""
     if others:

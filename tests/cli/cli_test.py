@@ -34,6 +34,38 @@ TETRAHEDRON = """OFF
 """
 
 
+# Of three products, in kg/m3, g/cm3 by a unit of the file's own, and a volume in the place of a density.
+DENSITIES = """#9001=(LENGTH_UNIT()NAMED_UNIT(*)SI_UNIT($,.METRE.));
+#9002=(MASS_UNIT()NAMED_UNIT(*)SI_UNIT(.KILO.,.GRAM.));
+#9003=DERIVED_UNIT((#9004,#9005));
+#9004=DERIVED_UNIT_ELEMENT(#9001,-3.);
+#9005=DERIVED_UNIT_ELEMENT(#9002,1.);
+#9006=MEASURE_REPRESENTATION_ITEM('density measure',POSITIVE_RATIO_MEASURE(2700.),#9003);
+#9007=REPRESENTATION('density',(#9006),#9008);
+#9008=REPRESENTATION_CONTEXT('','');
+#9009=PROPERTY_DEFINITION('material property','density',#{plate});
+#9010=PROPERTY_DEFINITION_REPRESENTATION(#9009,#9007);
+#9011=(CONVERSION_BASED_UNIT('CENTIMETRE',#9012)LENGTH_UNIT()NAMED_UNIT(#9013));
+#9012=LENGTH_MEASURE_WITH_UNIT(LENGTH_MEASURE(10.),#9014);
+#9013=DIMENSIONAL_EXPONENTS(1.,0.,0.,0.,0.,0.,0.);
+#9014=(LENGTH_UNIT()NAMED_UNIT(*)SI_UNIT(.MILLI.,.METRE.));
+#9015=(MASS_UNIT()NAMED_UNIT(*)SI_UNIT($,.GRAM.));
+#9016=DERIVED_UNIT((#9017,#9018));
+#9017=DERIVED_UNIT_ELEMENT(#9011,-3.);
+#9018=DERIVED_UNIT_ELEMENT(#9015,1.);
+#9019=MEASURE_REPRESENTATION_ITEM('density measure',POSITIVE_RATIO_MEASURE(7.85),#9016);
+#9020=REPRESENTATION('density',(#9019),#9008);
+#9021=PROPERTY_DEFINITION('material property','density',#{bolt});
+#9022=PROPERTY_DEFINITION_REPRESENTATION(#9021,#9020);
+#9030=DERIVED_UNIT((#9031));
+#9031=DERIVED_UNIT_ELEMENT(#9014,3.);
+#9032=MEASURE_REPRESENTATION_ITEM('volume measure',VOLUME_MEASURE(22620.5),#9030);
+#9033=REPRESENTATION('volume',(#9032),#9008);
+#9034=PROPERTY_DEFINITION('geometric validation property','volume',#{bracket});
+#9035=PROPERTY_DEFINITION_REPRESENTATION(#9034,#9033);
+"""
+
+
 class CommandLine(unittest.TestCase):
     def setUp(self):
         self.scratch = tempfile.TemporaryDirectory()
@@ -299,6 +331,68 @@ class CommandLine(unittest.TestCase):
         self.assertEqual([p["name"] for p in info["cad_patches"]], info["places"]["patches"])
         self.assertEqual([s.get("product") for s in info["solids"]], ["plate", "bracket", "bolt", "bolt"])
 
+    def test_densities_of_a_step_file_are_those_of_a_job(self):
+        self.needs_cad()
+        body, end = (SAMPLES / "assembly.step").read_text().rsplit("ENDSEC;", 1)
+        products = {name: next(re.findall(rf"#(\d+) = PRODUCT_DEFINITION\('design','',#{form}\b", body)[0]
+                               for form in re.findall(rf"#(\d+) = PRODUCT_DEFINITION_FORMATION\('','',#{number}\)", body))
+                    for number, name in re.findall(r"#(\d+) = PRODUCT\('(\w+)'", body)}
+        heavy = self.dir / "heavy.step"
+        heavy.write_text(body + DENSITIES.format(**products) + "ENDSEC;" + end)
+        report, deck = self.dir / "info.json", self.dir / "heavy.inp"
+        self.run_cli("info", heavy, "--json", report)
+        self.assertEqual({s["name"]: "density" in s and round(s["density"], 6) for s in json.loads(report.read_text())["solids"]},
+                         {"plate": 2700, "bracket": False, "bolt": 7850, "bolt#2": 7850})
+        materials = self.dir / "materials.json"
+
+        def densities_with(text):
+            materials.write_text(text)
+            told = self.run_cli("mesh", heavy, "-o", deck, "--size", 12, "--fix", "ground", "--materials", materials).stdout
+            found = re.findall(r"\*MATERIAL, NAME=(\S+)\n\*ELASTIC\n.*\n(?:\*DENSITY\n(\S+))?", deck.read_text())
+            return told, {name: density and round(float(density), 15) for name, density in found}
+
+        told, made = densities_with('{"plate": {"name": "alu", "E": 70000, "density": 3e-9}, "bolt": {"name": "steel", "E": 2e5}}')
+        self.assertIn('densities of the input, as they go with newtons: 7.85e-09 of "bolt", 7.85e-09 of "bolt#2"\n', told)
+        self.assertEqual(made, {"alu": 3e-9, "steel": 7.85e-9, "placeholder": 7.85e-9})
+        told, made = densities_with('{"default": {"name": "metal", "E": 2e5}}')
+        self.assertIn('2.7e-09 of "plate", 7.85e-09 of "bolt", 7.85e-09 of "bolt#2"\n', told)
+        self.assertEqual(made, {"metal": 2.7e-9, "metal_of_bracket": "", "metal_of_bolt": 7.85e-9})
+        told = self.run_cli("mesh", heavy, "-o", deck, "--size", .012, "--unit", "m", "--fix", "ground").stdout
+        self.assertIn("E 2.1e+11, nu 0.3, density 7850 stand there, which is steel in N, m and s", told)
+        self.assertIn('2700 of "plate"', told)
+
+    def test_orders_3_and_4_are_the_same_in_each_format(self):
+        part, report = SAMPLES / "gear.obj", self.dir / "report.json"
+        for order in (3, 4):
+            files = [self.dir / f"part{order}{end}" for end in (".msh", ".vtu", "_text.msh", "_text.vtu")]
+            self.run_cli("mesh", part, "--size", 12, "--order", order, "-o", files[0], "-o", files[1], "--json", report)
+            made = json.loads(report.read_text())
+            self.run_cli("convert", files[1], "-o", files[2], "--ascii", "--format", "msh22")
+            self.run_cli("convert", files[0], "-o", files[3], "--ascii")
+            self.assertIn(f" {29 if order == 3 else 30} ", files[2].read_text())
+            told = set()
+            for file in files:
+                said = self.run_cli("check", file).stdout
+                self.assertIn(f"tetrahedra of order {order}", said)
+                told.update(re.findall("order . every Jacobian proven positive; the least scaled one is ([0-9.]+)|$", said))
+                self.run_cli("info", file, "--json", report)
+                found = json.loads(report.read_text())
+                self.assertEqual(found["order"], order)
+                self.assertAlmostEqual(found["volume"] / made["volume"], 1, 6)
+            self.assertEqual(len(told - {""}), 1, told)
+            self.assertIn("holds no elements of order", self.run_cli("convert", files[0], "-o", self.dir / "linear.inp").stdout)
+            back = self.run_cli("convert", files[0], "-o", self.dir / "back.vtu", "--order", "1").stdout
+            self.assertIn("written", back)
+            # One node of one element pulled away: found, with its element.
+            lines = files[2].read_text().split("\n")
+            at = lines.index("$Nodes") + 1 + int(lines[lines.index("$Nodes") + 1])
+            number, x, y, z = lines[at].split()
+            lines[at] = f"{number} {float(x) + 50} {y} {z}"
+            files[2].write_text("\n".join(lines))
+            self.assertIn("is not positive everywhere", self.run_cli("check", files[2], status=3).stderr)
+        refused = self.run_cli("mesh", part, "-o", self.dir / "a.vtu", "--order", 3, "--layers", 2, "--total", 1, status=2)
+        self.assertIn("--order 3 and 4 go with neither --layers nor --periodic yet", refused.stderr)
+
     def test_contacts_are_shared_split_or_separate(self):
         self.needs_cad()
         mesh, report = self.dir / "a.vtu", self.dir / "a.json"
@@ -550,7 +644,7 @@ class CommandLine(unittest.TestCase):
         with_field.write_text(text.partition("POINT_DATA")[0] + field)
         out = self.dir / "b.vtk"
         self.run_cli("adapt", with_field, "--size", 5, "-o", out, "--ascii", "--json", report)
-        self.assertEqual(json.loads(report.read_text())["carried"], [{"name": "T", "of": "points", "components": 1}])
+        self.assertEqual([(f["name"], f["of"], f["components"]) for f in json.loads(report.read_text())["carried"]], [("T", "points", 1)])
         made = out.read_text()
         count = int(made.split("POINTS ")[1].split()[0])
         xs = [float(w) for w in made.split("POINTS ")[1].split()[2:2 + 3 * count]][0::3]
@@ -559,11 +653,104 @@ class CommandLine(unittest.TestCase):
         self.assertLess(sorted(abs(x - t) for x, t in zip(xs, values))[count // 2], 1e-9)
         # And again from that file, without one, and where it is not.
         self.run_cli("adapt", out, "--size", 8, "-o", self.dir / "c.msh", "--json", report)
-        self.assertEqual(json.loads(report.read_text())["carried"], [{"name": "T", "of": "points", "components": 1}])
+        self.assertEqual([(f["name"], f["of"], f["components"]) for f in json.loads(report.read_text())["carried"]], [("T", "points", 1)])
         self.run_cli("adapt", out, "--size", 8, "-o", self.dir / "c.vtu", "--carry", "none", "--json", report)
         self.assertNotIn("carried", json.loads(report.read_text()))
         self.assertIn("no field", self.run_cli("adapt", out, "--size", 8, "-o", self.dir / "d.vtu", "--carry", "u", status=3).stderr)
         self.run_cli("adapt", out, "--size", 8, "-o", self.dir / "d.inp", "--carry", "T", status=2)
+
+    def test_carries_fields_to_another_mesh(self):
+        old, new, out, report = (self.dir / name for name in ("old.vtu", "new.msh", "out.vtk", "r.json"))
+        self.run_cli("mesh", SAMPLES / "bracket.stl", "-o", old, "--size", 8, "--keep-surface", "--field", "T=300+x", "--field", "s=T^2")
+        self.run_cli("mesh", SAMPLES / "bracket.stl", "-o", new, "--size", 6, "--keep-surface")
+        done = self.run_cli("carry", old, new, "-o", out, "--ascii", "--json", report)
+        self.assertIn("integral", done.stdout)
+        told = json.loads(report.read_text())
+        self.assertEqual(told["inputs"], [str(old), str(new)])
+        self.assertEqual(len(told["carried"]), 4)
+        for field in told["carried"]:
+            self.assertEqual(field["beyond"], 0)
+            self.assertLess(field["integral_error"], 1e-12)
+            self.assertGreaterEqual(field["after"]["least"][0], field["before"]["least"][0])
+            self.assertLessEqual(field["after"]["greatest"][0], field["before"]["greatest"][0])
+        made = out.read_text()
+        count = int(made.split("POINTS ")[1].split()[0])
+        xs = [float(w) for w in made.split("POINTS ")[1].split()[2:2 + 3 * count]][0::3]
+        values = [float(w) for w in made.split("T 1 %d double" % count)[1].split()[:count]]
+        self.assertLess(max(abs(300 + x - t) for x, t in zip(xs, values)), 1e-9)
+        self.run_cli("carry", out, new, "-o", self.dir / "again.vtu", "--linear-elements", "--free-integrals", "--carry", "T", "--json", report)
+        self.assertEqual([f["of"] for f in json.loads(report.read_text())["carried"]], ["points", "elements"])
+        # Improvement takes them along, too.
+        self.run_cli("improve", old, "-o", self.dir / "better.vtu", "--json", report)
+        self.assertLess(max(f["integral_error"] for f in json.loads(report.read_text())["carried"]), 1e-12)
+        for words, status, said in ((("carry", new, old, "-o", out), 3, "no field"), (("carry", old, "-o", out), 2, "2"),
+                                    (("carry", old, new, "-o", self.dir / "x.inp"), 2, "no output holds fields"),
+                                    (("carry", old, new, "-o", new), 2, "overwritten"), (("carry", old, new, "-o", out, "--carry", "nosuch"), 3, "nosuch")):
+            self.assertIn(said, self.run_cli(*words, status=status).stderr)
+
+    def test_level_sets_become_faces(self):
+        start, out, report = self.dir / "in.vtu", self.dir / "out.vtu", self.dir / "r.json"
+        self.run_cli("mesh", SAMPLES / "bracket.stl", "-o", start, "--size", 4, "--field", "phi=sqrt((x-5)^2+y^2+(z-4)^2)-9", "--field", "low=z-3")
+        done = self.run_cli("adapt", start, "--level-set", "phi", "--level-set", "low=.2", "-o", out, "--json", report)
+        self.assertIn("between regions", done.stdout)
+        told = json.loads(report.read_text())
+        self.assertEqual([r["name"] for r in told["regions"]], ["outside", "phi", "low"])
+        self.assertEqual([c["name"] for c in told["level_sets"]], ["phi", "low"])
+        self.assertLess(max(f["integral_error"] for f in told["carried"]), 1e-12)
+        self.assertIn("phi_surface", self.run_cli("check", out).stdout)
+        for words, status in ((("--level-set", "nosuch"), 3), (("--level-set", "phi=x"), 2), (("--level-set", "phi", "--map", self.dir / "m.csv"), 2),
+                              (("--level-set", "phi", "--level-set", "phi=1"), 2), (("--level-set", "phi", "--least-piece", "-1"), 2)):
+            self.run_cli("adapt", start, "-o", self.dir / "x.vtu", *words, status=status)
+        self.assertNotIn("x.vtu", self.files())
+
+    def test_moves_by_a_field(self):
+        bare, start, out, report = (self.dir / name for name in ("a.vtk", "in.vtk", "out.vtu", "r.json"))
+        self.run_cli("mesh", SAMPLES / "bracket.stl", "-o", bare, "--size", 8, "--ascii")
+        text = bare.read_text()
+        count = int(text.split("POINTS ")[1].split()[0])
+        xyz = [float(w) for w in text.split("POINTS ")[1].split()[2:2 + 3 * count]]
+
+        def moved(name, row, status=0):
+            rows = "\n".join(row(*xyz[i:i + 3]) for i in range(0, 3 * count, 3))
+            start.write_text(text.partition("POINT_DATA")[0] + f"POINT_DATA {count}\nFIELD f 2\n{name} 3 {count} double\n{rows}\n"
+                             f"x 1 {count} double\n" + "\n".join(map(repr, xyz[0::3])) + "\n")
+            return self.run_cli("move", start, "--displacement", "u", "-o", out, "--json", report, status=status)
+        moved("u", lambda x, y, z: f"{2 * x!r} 0 0")
+        told = json.loads(report.read_text())
+        self.assertEqual(told["history"][-1]["fraction"], 1)
+        self.assertEqual([f["name"] for f in told.get("carried", [{"name": "x"}])], ["x"])
+        volume = json.loads(self.run_cli("info", bare, "--json", "-").stdout)["volume"]
+        self.assertAlmostEqual(told["history"][-1]["volume"] / volume, 3, delta=0.03)
+        out.unlink()
+        self.assertIn("no field", moved("v", lambda x, y, z: "0 0 0", status=3).stderr)
+        self.run_cli("move", start, "-o", out, status=2)
+        self.assertNotIn(out.name, self.files())
+
+    def test_carries_vectors_of_elements(self):
+        old = self.dir / "old.vtk"
+        old.write_text("""# vtk DataFile Version 3.0
+a tetrahedron of two
+ASCII
+DATASET UNSTRUCTURED_GRID
+POINTS 5 double
+0 0 0  1 0 0  0 1 0  0 0 1  1 1 1
+CELLS 2 10
+4 0 1 2 3
+4 1 2 3 4
+CELL_TYPES 2
+10 10
+CELL_DATA 2
+VECTORS v double
+1 2 3
+4 5 6
+""".replace("VECTORS v double", "FIELD more 1\nv 3 2 double"))
+        out, report = self.dir / "out.vtu", self.dir / "r.json"
+        self.run_cli("carry", old, old, "-o", out, "--json", report)
+        field = json.loads(report.read_text())["carried"][0]
+        self.assertEqual((field["components"], field["after"]), (3, field["before"]))
+        self.assertEqual((field["before"]["least"], field["before"]["greatest"]), ([1, 2, 3], [4, 5, 6]))
+        self.run_cli("carry", out, old, "-o", self.dir / "again.vtk", "--json", report)
+        self.assertEqual(json.loads(report.read_text())["carried"][0], field)
 
     def test_adapts_only_what_is_asked(self):
         start, out, table, report = (self.dir / name for name in ("a.msh", "b.msh", "map.json", "r.json"))

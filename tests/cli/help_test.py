@@ -90,6 +90,7 @@ class Help(unittest.TestCase):
                               ("head_ct.nii.gz", "head.nii.gz")):
             shutil.copy(SAMPLES / sample, self.dir / image)
         shutil.copy(SAMPLES / "bracket.step", self.dir / "part.step")
+        (self.dir / "parts").mkdir()
         reads_cad = (pathlib.Path(OCTAFRONT).parent / "../cad/octafront-cad").exists()
         self.run_cli("surface", SAMPLES / "gear.obj", "--keep-surface", "-o", self.dir / "bolt.stl")
         self.run_cli("mesh", self.dir / "part.stl", "-o", self.dir / "in.msh", "--size", 1.5)
@@ -108,6 +109,11 @@ class Help(unittest.TestCase):
         text = (self.dir / "in.vtu").read_text()
         (self.dir / "in.vtu").write_text(text.replace(
             "<PointData>", f'<PointData><DataArray type="Float64" Name="u" format="ascii">{values}</DataArray>', 1))
+        self.run_cli("convert", self.dir / "in.msh", "-o", self.dir / "old.vtu", "--field", "T=x", "--field", "rho=y*y")
+        self.run_cli("convert", self.dir / "in.msh", "-o", self.dir / "new.msh", "-o", self.dir / "new.vtu")
+        vectors = " ".join(["0.1 0 0"] * points)
+        (self.dir / "load.vtu").write_text(text.replace(
+            "<PointData>", f'<PointData><DataArray type="Float64" Name="u" NumberOfComponents="3" format="ascii">{vectors}</DataArray>', 1))
         for command in self.commands():
             examples = self.run_cli("help", command).out.split("Examples:\n")[1]
             for line in examples.splitlines():
@@ -115,7 +121,7 @@ class Help(unittest.TestCase):
                 if not shell.startswith("octafront") or command in ("help", "completion") or (".step" in shell and not reads_cad):
                     continue
                 done = subprocess.run(["bash", "-c", f'octafront() {{ "{OCTAFRONT}" "$@"; }}; set -o pipefail; {shell}'],
-                                      cwd=self.dir, capture_output=True, timeout=120)
+                                      cwd=self.dir, stdin=subprocess.DEVNULL, capture_output=True, timeout=120)
                 self.assertEqual(done.returncode, 0, f"{shell}: {done.stderr}")
 
     def test_manual_has_every_option(self):

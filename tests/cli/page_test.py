@@ -96,7 +96,10 @@ class PageFile(unittest.TestCase):
 
     def test_fetches_nothing(self):
         page, _, _ = self.bracket("--size", 9)
-        self.assertEqual(page.links, ["data:,"], "an icon that is none, and nothing else")
+        icon, still = page.links
+        self.assertEqual(icon, "data:,", "an icon that is none")
+        self.assertTrue(still.startswith("data:image/png;base64,"), "the picture for browsers that cannot draw")
+        self.assertLess(len(still), 100_000)
         self.assertIn("default-src 'none'", page.text)
         for word in ("http:", "https:", "//cdn", "import(", "fetch(", "XMLHttpRequest", "WebSocket", "innerHTML"):
             self.assertNotIn(word, page.text)

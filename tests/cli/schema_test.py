@@ -80,7 +80,8 @@ class Schema(unittest.TestCase):
         self.report("mesh", bracket, "-o", plain, "--size", 8)
         for run in (("info", mesh), ("check", mesh, "--solver", "ABAQUS"), ("convert", mesh, "-o", self.dir / "c.inp"),
                     ("improve", mesh, "-o", self.dir / "i.msh"), ("report", mesh, "-o", self.dir / "p.html"),
-                    ("adapt", plain, "--size", 9, "-o", self.dir / "a.msh")):
+                    ("adapt", plain, "--size", 9, "-o", self.dir / "a.msh"), ("convert", plain, "-o", self.dir / "f.vtu", "--field", "x2=x*x"),
+                    ("carry", self.dir / "f.vtu", plain, "-o", self.dir / "g.vtu")):
             expect_report(self, OCTAFRONT, self.report(*run))
         for image in ("head_labels.nii.gz", "head_ct.nii.gz"):
             expect_report(self, OCTAFRONT, self.report("info", SAMPLES / image))

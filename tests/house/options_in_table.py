@@ -24,7 +24,7 @@ def fields(header):
         body = re.sub(r"///?.*", "", body)
         for statement in body.split(";"):
             match = re.match(r"\s*[\w:<>, ()*&]+[\s>](\w+)\s*(=.*)?$", statement.replace("\n", " "))
-            if match and not re.fullmatch(r"size|surface|layers|volume|improve|adapt|require", match[1]) or match and prefix:
+            if match and not re.fullmatch(r"size|surface|layers|volume|improve|adapt|carry|move|require", match[1]) or match and prefix:
                 found.add(prefix + match[1])
     return found
 

@@ -965,6 +965,53 @@ class Meshes(Case):
         with self.assertRaises(octafront.OptionError):
             octafront.adapt(old, size=0.05, only="nobody")
 
+    def test_fields_go_to_another_mesh(self):
+        old, new = octafront.mesh(*cube(), size=0.2), octafront.mesh(*cube(), size=0.17)
+        linear, tensor = 2 * old.points - 1, np.arange(9.0 * len(old.tets)).reshape(-1, 3, 3)
+        made = octafront.carry(old, new, {"u": linear, "s": tensor}, linear_elements=True)
+        self.assertLess(np.abs(made["u"] - (2 * new.points - 1)).max(), 1e-12)
+        self.assertEqual(made["s"].shape, (len(new.tets), 3, 3))
+        of_tensor = made.report["carried"][1]
+        self.assertEqual((of_tensor["name"], of_tensor["components"], of_tensor["beyond"]), ("s", 9, 0))
+        self.assertLess(of_tensor["integral_error"], 1e-12)
+        self.assertGreaterEqual(made["s"].min(), 0)
+        self.assertEqual(made.report["carry"]["outside_nodes"], 0)
+        better = octafront.improve(old, fields={"u": linear})
+        self.assertLess(np.abs(better.fields["u"] - (2 * better.points - 1)).max(), 1e-12)
+        self.assertIn("carried", better.report)
+        with self.assertRaises(octafront.OptionError):
+            octafront.carry(old, new, {"u": linear[1:]})
+        with self.assertRaises(TypeError):
+            octafront.carry(old, new, {"u": linear}, size=1)
+
+    def test_meshes_move(self):
+        old = octafront.mesh(*cube(), size=0.2)
+        stretch = old.points * [8, 0, 0]
+        stress = np.arange(6.0 * len(old.tets)).reshape(-1, 6)
+        new = old.move(stretch, fields={"x": old.points[:, 0], "s": stress})
+        self.assertEqual(new.report["history"][-1]["fraction"], 1)
+        self.assertAlmostEqual(new.report["history"][-1]["volume"], 9 * abs(np.prod(np.ptp(old.points, axis=0))), places=9)
+        self.assertLess(np.abs(9 * new.fields["x"] - new.points[:, 0]).max(), 1e-9)
+        self.assertEqual(new.fields["s"].shape, (len(new.tets), 6))
+        with self.assertRaises(octafront.OptionError):
+            old.move(stretch[1:])
+        with self.assertRaises(octafront.MeshingError):
+            old.move(-2 * old.points * [1, 0, 0])
+
+    def test_level_sets_become_faces(self):
+        old = octafront.mesh(*cube(), size=0.15)
+        phi = np.linalg.norm(old.points - old.points.mean(0), axis=1)
+        new = octafront.adapt(old, level_sets={"ball": (phi, 0.3)}, fields={"u": 2 * old.points - 1})
+        self.assertEqual(new.names["regions"], ["outside", "ball"])
+        self.assertIn("ball_surface", new.names["patches"])
+        self.assertLess(np.abs(new.fields["u"] - (2 * new.points - 1)).max(), 1e-12)
+        self.assertEqual([cut["name"] for cut in new.report["level_sets"]], ["ball"])
+        self.assertGreater(new.quality["dihedral_min_degrees"], 12)
+        both = octafront.adapt(old, level_sets={"ball": (phi, 0.3), "low": old.points[:, 2] - 0.1}, size=0.12)
+        self.assertEqual(both.names["regions"], ["outside", "ball", "low"])
+        with self.assertRaises(octafront.OptionError):
+            octafront.adapt(old, level_sets={"ball": phi[1:]})
+
     def test_adapt_carries_fields(self):
         old = octafront.mesh(*cube(), size=0.2)
         linear = 2 * old.points - 1
@@ -1257,6 +1304,8 @@ class Package(Case):
             given = {} if row["default"] is None else {row["name"]: row["default"]}
             if row["name"] in keywords_of("mesh"):
                 octafront.mesh(*cube(), size=0.5, **given)
+            elif row["name"] in keywords_of("move"):
+                octafront.move(mesh, 0 * mesh.points, **given)
             else:
                 octafront.adapt(mesh, size=0.5, **given)
 

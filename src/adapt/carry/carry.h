@@ -1,48 +1,101 @@
 #pragma once
 
-// adapt/carry: what was known on a mesh, on the mesh that was made of it: values at vertices by linear interpolation,
-// values of elements such that their integrals stay. Takes two meshes and what became of what; looks only at what has
-// changed.
+// adapt/carry: what was known on a mesh, on another: values at nodes by linear interpolation, values of elements such
+// that their integrals stay. Takes two meshes and what they have in common; looks only at what differs.
 
+#include <octafront/carry.h>
 #include <octafront/tet_mesh.h>
 
+#include "adapt/carry/regions.h"
+#include "base/geometry/box_tree.h"
+#include "base/geometry/measures.h"
+#include "base/geometry/tet_overlap.h"
+
 #include <cstddef>
-#include <memory>
 #include <span>
 #include <vector>
 
 namespace octafront::adapt {
 
-/// Const and safe on any number of threads; the same values for any number of them. Refers to what it is made of.
-class Carrier {
+/// The meshes, and what they have in common.
+struct MeshPair {
+  const TetMesh &before, &now;  ///< both valid; of second order they are taken as linear ones
+  const MatchedRegions& regions;
+  KnownItems same;
+};
+
+/// `components` numbers for each node or element of the old mesh.
+struct OldValues {
+  std::span<const double> values;
+  std::size_t components;
+};
+
+inline TetCorners corners_in(const TetMesh& mesh, TetIndex t) {
+  const auto& [a, b, c, d] = mesh.tets[t];
+  return {mesh.points[a], mesh.points[b], mesh.points[c], mesh.points[d]};
+}
+inline double volume_in(const TetMesh& mesh, TetIndex t) {
+  const auto& [a, b, c, d] = mesh.tets[t];
+  return signed_volume(mesh.points[a], mesh.points[b], mesh.points[c], mesh.points[d]);
+}
+/// The place of a tetrahedron that is nearest to p, which lies outside.
+Vec3 nearest_on(const TetCorners& corners, Vec3 p);
+
+/// The tets of the old mesh that the new one has not, by their boxes.
+class GoneTets {
  public:
-  /// Both valid and linear; `old_of_new` and `old_tet_of_new` as AdaptedMesh has them.
-  Carrier(const TetMesh& before, const TetMesh& now, std::span<const VertexIndex> old_of_new,
-          std::span<const TetIndex> old_tet_of_new);
-  ~Carrier();
-  Carrier(const Carrier&) = delete;
-  Carrier& operator=(const Carrier&) = delete;
+  explicit GoneTets(const MeshPair& meshes);
 
-  /// Values at the vertices of `now`, of those of `before`, `components` numbers each. A vertex that is where it was
-  /// has its own bits; another the linear function of the tet that holds it, outside of all that of the nearest one, as
-  /// far out as that tet is high and no farther.
-  std::vector<double> at_vertices(std::span<const double> values, std::size_t components) const;
+  bool is_gone(TetIndex t) const { return !is_kept_[t]; }
 
-  /// Values of the tets of `now`: those of a tet that is unchanged are its own; another has the mean over what it
-  /// shares with old ones of its region. Where the region's walls moved, its integral would be missed by a little: that
-  /// is spread evenly over those that changed, so the sum of value times volume in each region stays, to rounding.
-  std::vector<double> of_tets(std::span<const double> values, std::size_t components) const;
+  /// visit(tet) for all whose boxes meet the box, in an order that depends on the tree only.
+  template <class Visit>
+  void for_each_near(const Box3& box, const Visit& visit) const {
+    boxes_.for_each([&](const Box3& b) { return b.overlaps(box); }, [&](const auto& item) { visit(item.number); });
+  }
+
+  /// The tet nearest to p, of those wanted; kNone: there is none.
+  template <class Wanted>
+  TetIndex nearest(Vec3 p, const Wanted& wanted) const {
+    TetIndex best = kNone;
+    double distance = HUGE_VAL;
+    boxes_.for_each([&](const Box3& box) { return squared_distance(p, nearest_in(box, p)) < distance; },
+                    [&](const auto& item) {
+                      if (!wanted(item.number)) return;
+                      const double d = squared_distance(p, nearest_on(corners_in(mesh_, item.number), p));
+                      if (d < distance) distance = d, best = item.number;
+                    },
+                    [&](const Box3& left, const Box3& right) {
+                      return squared_distance(p, nearest_in(left, p)) <= squared_distance(p, nearest_in(right, p));
+                    });
+    return best;
+  }
 
  private:
-  struct Tree;
+  using Boxes = BoxTree<Box3>;
+  static Vec3 nearest_in(const Box3& box, Vec3 p) { return max(box.lo, min(box.hi, p)); }
+  static std::vector<std::uint8_t> kept_of(const MeshPair& meshes);
+  static std::vector<Boxes::Item> items_of(const TetMesh& mesh, const std::vector<std::uint8_t>& is_kept);
 
-  void spread_rest(std::span<const double> values, std::size_t components, std::vector<double>& made) const;
-
-  const TetMesh& before_;
-  const TetMesh& now_;
-  std::span<const VertexIndex> old_of_new_;
-  std::span<const TetIndex> old_tet_of_new_;
-  std::unique_ptr<Tree> tree_;  ///< of the old tets that are gone
+  const TetMesh& mesh_;
+  std::vector<std::uint8_t> is_kept_;
+  Boxes boxes_;
 };
+
+/// Values at the nodes of the new mesh. A node that is where it was has its own bits; another the linear function of
+/// the tet that holds it. Enters into the report what is copied and what lies outside.
+std::vector<double> carried_at_nodes(const MeshPair& meshes, const GoneTets& gone, const OldValues& old,
+                                     OutsideNodes outside, const RunContext& context, CarryReport& report);
+
+/// Values of the tets of the new mesh: those of a tet that is unchanged are its own; another has the mean over what it
+/// shares with old ones of its region. Enters into the report what is not covered.
+std::vector<double> carried_of_elements(const MeshPair& meshes, const GoneTets& gone, const OldValues& old,
+                                        const CarryOptions& options, const RunContext& context, CarryReport& report);
+
+/// Spreads what the integral over each region lacks over its elements that changed, evenly among those that stay within
+/// the range of the region so. Where no values in that range have the integral, all are shifted by the same. Returns
+/// for each component how far that goes beyond.
+std::vector<double> spread_rest(const MeshPair& meshes, const GoneTets& gone, const OldValues& old,
+                                std::vector<double>& made);
 
 }  // namespace octafront::adapt

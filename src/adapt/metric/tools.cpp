@@ -189,6 +189,23 @@ std::vector<Metric> scaled_hessians(std::vector<Metric> hessians, double norm) {
 
 }  // namespace
 
+std::vector<Metric> of_edges(const TetMesh& mesh) {
+  adapt::require_linear(mesh);
+  std::vector<double> sum(mesh.points.size(), 0);
+  std::vector<std::uint32_t> count(mesh.points.size(), 0);
+  // Inner edges count once for each element around them, as many for both of their ends.
+  for (const Tet& t : mesh.tets)
+    for (const auto& e : kTetEdges) {
+      const VertexIndex a = t[static_cast<std::size_t>(e[0])], b = t[static_cast<std::size_t>(e[1])];
+      const double length = distance(mesh.points[a], mesh.points[b]);
+      for (const VertexIndex v : {a, b}) sum[v] += length, ++count[v];
+    }
+  std::vector<Metric> metrics(mesh.points.size());
+  for (std::size_t v = 0; v < metrics.size(); ++v)
+    if (count[v] > 0) metrics[v] = Metric::of_size(sum[v] / count[v]);
+  return metrics;
+}
+
 std::vector<Metric> implied(const TetMesh& mesh) {
   adapt::require_linear(mesh);
   std::vector<Metric> sum(mesh.points.size(), Metric{0, 0, 0, 0, 0, 0});

@@ -26,4 +26,9 @@ const LengthUnit* unit_named(const std::string& name) {
   return nullptr;
 }
 
+// 1 N = 1 kg m/s2: with forces in N and lengths of L metres, a mass of 1 is 1/L kg.
+double density_with_newtons(double kilograms_per_cubic_metre, const LengthUnit& unit) {
+  return kilograms_per_cubic_metre * (unit.metres * unit.metres) * (unit.metres * unit.metres);
+}
+
 }  // namespace octafront

@@ -4,6 +4,7 @@
 #include <atomic>
 #include <cmath>
 #include <cstdlib>
+#include <filesystem>
 #include <fstream>
 #include <limits>
 #include <string_view>
@@ -30,6 +31,7 @@ constexpr int kStatus = 7;
 std::atomic<std::uint64_t> memory_set{kNoLimit};
 std::atomic<std::uint64_t> elements_set{kNoLimit};
 std::atomic<bool> is_time_over{false};
+std::vector<std::string> folders_set;
 std::atomic<double> seconds_set{std::numeric_limits<double>::infinity()};
 
 /// How much longer work may go on that does not ask whether it should.
@@ -153,11 +155,44 @@ std::uint64_t memory_of_system() {
 
 }  // namespace
 
+namespace {
+
+/// Where a file is, or would be made: also where a link leads that leads to nothing yet.
+std::filesystem::path real_place(std::filesystem::path file) {
+  constexpr int kMostLinks = 40;
+  std::error_code error;
+  for (int i = 0; i < kMostLinks && std::filesystem::is_symlink(std::filesystem::symlink_status(file, error)); ++i) {
+    const std::filesystem::path target = std::filesystem::read_symlink(file, error);
+    if (error) break;
+    file = target.is_absolute() ? target : file.parent_path() / target;
+  }
+  return std::filesystem::weakly_canonical(std::filesystem::absolute(file, error), error);
+}
+
+}  // namespace
+
+bool lies_in(const std::string& file, const std::vector<std::string>& folders) {
+  const std::filesystem::path place = real_place(file);
+  return std::ranges::any_of(folders, [&](const std::string& named) {
+    std::error_code error;
+    const std::filesystem::path folder = std::filesystem::canonical(named, error);
+    return !error && !place.empty() &&
+           std::mismatch(folder.begin(), folder.end(), place.begin(), place.end()).first == folder.end();
+  });
+}
+
+void require_in_folders(const std::string& file) {
+  if (folders_set.empty() || lies_in(file, folders_set)) return;
+  throw LimitError(LimitError::Limit::kFolders,
+                   fmt::format("{}: lies outside of the folders that files may be in (`within`)", file));
+}
+
 std::string bytes_in_words(double bytes) {
   return bytes < 1e9 ? fmt::format("{:.0f} MB", std::ceil(bytes / 1e6)) : fmt::format("{:.1f} GB", bytes / 1e9);
 }
 
 void set_process_limits(const ProcessLimits& limits) {
+  folders_set = limits.folders;
   memory_set = limits.memory.value_or(memory_of_machine());
   if (memory_set != kNoLimit) limit_data(memory_set);
   elements_set = limits.elements.value_or(kNoLimit);

@@ -60,6 +60,7 @@ class Names {
 VertexIndex corner_count(const TetMesh& mesh) {
   auto corners = static_cast<VertexIndex>(mesh.points.size());
   for (const auto& mids : mesh.mid_nodes) corners = std::min(corners, *std::ranges::min_element(mids));
+  if (!mesh.high_nodes.empty()) corners = *std::ranges::min_element(mesh.high_nodes);
   return corners;
 }
 
@@ -125,6 +126,7 @@ class Joining {
     for (const WideFace& face : part.wide_faces)
       mesh_.wide_faces.push_back({face.first + count(mesh_.boundary), face.nodes});
     append(mesh_.tets, part.tets), append(mesh_.mid_nodes, part.mid_nodes);
+    append(mesh_.high_nodes, part.high_nodes), mesh_.high_order = part.high_order;
     append(mesh_.boundary, part.boundary), append(mesh_.source, part.source);
     append(mesh_.interfaces, part.interfaces), append(mesh_.curve_edges, part.curve_edges);
     const auto inner = part.face_layers.begin() + std::ssize(part.boundary);

@@ -157,12 +157,19 @@ TetMesh part_of(const TetMesh& whole, const Origins& items, std::vector<VertexIn
   for (VertexIndex v = 0; v < items.nodes.size(); ++v) here[items.nodes[v]] = v;
   part.tets = of_items(whole.tets, items.tets);
   part.mid_nodes = of_items(whole.mid_nodes, items.tets);
+  part.high_order = whole.high_order;
+  for (const std::uint32_t t : items.tets) {
+    const auto first = whole.high_nodes.begin() + static_cast<std::ptrdiff_t>(t * whole.high_nodes_per_tet());
+    part.high_nodes.insert(part.high_nodes.end(), first,
+                           first + static_cast<std::ptrdiff_t>(whole.high_nodes_per_tet()));
+  }
   const auto outer = static_cast<std::uint32_t>(whole.boundary.size());
   for (const std::uint32_t f : items.faces)
     f < outer ? part.boundary.push_back(whole.boundary[f]) : part.interfaces.push_back(whole.interfaces[f - outer]);
   part.curve_edges = of_items(whole.curve_edges, items.edges);
   renumber(part.tets, here);
   renumber(part.mid_nodes, here);
+  for (VertexIndex& v : part.high_nodes) v = here[v];
   renumber(part.boundary, here);
   renumber(part.interfaces, here);
   renumber(part.curve_edges, here);

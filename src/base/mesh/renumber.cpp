@@ -35,6 +35,7 @@ void renumber_named_nodes(TetMesh& mesh, const std::vector<VertexIndex>& number)
 void renumber_vertices(TetMesh& mesh, const std::vector<VertexIndex>& number) {
   renumber(mesh.tets, number);
   renumber(mesh.mid_nodes, number);
+  for (VertexIndex& v : mesh.high_nodes) v = number[v];
   renumber(mesh.boundary, number);
   renumber(mesh.interfaces, number);
   renumber(mesh.curve_edges, number);
@@ -52,6 +53,7 @@ void drop_unused_points(TetMesh& mesh, std::size_t kept) {
   std::fill_n(number.begin(), kept, 0);
   mark_used(mesh.tets, number);
   mark_used(mesh.mid_nodes, number);
+  for (const VertexIndex v : mesh.high_nodes) number[v] = 0;
   keep_numbered(mesh.points, number);
   renumber_vertices(mesh, number);
 }

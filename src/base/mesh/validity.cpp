@@ -4,6 +4,7 @@
 #include "base/core/buckets.h"
 #include "base/core/parallel.h"
 #include "base/core/shared_value.h"
+#include "base/geometry/curved_tet.h"
 #include "base/geometry/measures.h"
 #include "base/geometry/predicates.h"
 #include "base/mesh/complex.h"
@@ -60,6 +61,10 @@ std::optional<std::string> point_defect(const TetMesh& mesh) {
     return fmt::format("vertex {} {} is not finite", v, place(mesh.points[v]));
   if (auto d = range_defect(mesh.tets, n, "tetrahedron")) return d;
   if (auto d = range_defect(mesh.mid_nodes, n, "tetrahedron")) return d;
+  for (std::size_t i = 0; i < mesh.high_nodes.size(); ++i)
+    if (mesh.high_nodes[i] >= n)
+      return fmt::format("tetrahedron {} refers to vertex {} of {}", i / mesh.high_nodes_per_tet(), mesh.high_nodes[i],
+                         n);
   if (auto d = range_defect(mesh.boundary, n, "boundary face")) return d;
   if (auto d = range_defect(mesh.interfaces, n, "interface")) return d;
   if (auto d = range_defect(mesh.curve_edges, n, "curve edge")) return d;
@@ -83,6 +88,12 @@ std::optional<std::string> array_defect(const TetMesh& mesh) {
   if (auto d = misfit("interface_patch", mesh.interface_patch.size(), mesh.interfaces.size(), "interfaces")) return d;
   if (auto d = misfit("curve", mesh.curve.size(), mesh.curve_edges.size(), "curve edges")) return d;
   if (auto d = misfit("face_layers", mesh.face_layers.size(), mesh.boundary.size() + mesh.interfaces.size(), "faces"))
+    return d;
+  if (mesh.high_order > 0 && (mesh.high_order < 3 || mesh.high_order > 4 || mesh.is_second_order()))
+    return fmt::format("high_order is {}{}", mesh.high_order,
+                       mesh.is_second_order() ? ", and there are mid_nodes" : "");
+  if (auto d = misfit("high_nodes", mesh.high_nodes.size(), mesh.tets.size() * mesh.high_nodes_per_tet(),
+                      "nodes of tetrahedra"))
     return d;
   return misfit("mid_nodes", mesh.mid_nodes.size(), mesh.tets.size(), "tetrahedra");
 }
@@ -201,7 +212,21 @@ std::optional<std::string> sign_defect(const TetMesh& mesh, std::uint64_t first)
                      place(p[a]), place(p[b]), place(p[c]), place(p[d]));
 }
 
+std::optional<std::string> high_jacobian_defect(const TetMesh& mesh) {
+  const auto t = static_cast<TetIndex>(parallel_find(mesh.tets.size(), [&](std::size_t i) {
+    std::array<Vec3, 35> room;
+    return validity_of(mesh.order(), nodes_of_tet(mesh, static_cast<TetIndex>(i), room)) != Validity::kValid;
+  }));
+  if (t == mesh.tets.size()) return std::nullopt;
+  std::array<Vec3, 35> room;
+  const std::span<const Vec3> nodes = nodes_of_tet(mesh, t, room);
+  return fmt::format("the Jacobian of tetrahedron {} at {} is not proven positive: its least coefficient is {:.3g}", t,
+                     place(centroid(nodes[0], nodes[1], nodes[2], nodes[3])),
+                     jacobian_range(mesh.order(), nodes).least);
+}
+
 std::optional<std::string> jacobian_defect(const TetMesh& mesh) {
+  if (mesh.high_order > 0) return high_jacobian_defect(mesh);
   if (!mesh.is_second_order()) return std::nullopt;
   const auto t = static_cast<TetIndex>(parallel_find(mesh.tets.size(), [&](std::size_t i) {
     return !has_positive_jacobian(quadratic_nodes(mesh, static_cast<TetIndex>(i)));
@@ -462,6 +487,7 @@ std::vector<std::uint8_t> vertices_in_use(const TetMesh& mesh) {
   };
   use(mesh.tets);
   use(mesh.mid_nodes);
+  for (const VertexIndex v : mesh.high_nodes) is_used[v] = 1;
   return is_used;
 }
 

@@ -152,14 +152,14 @@ std::vector<Row<IntakeOptions>> image_rows() {
                        "Which of several images of a folder or a file, counted from 1; 0: the only one")
               .takes("N")
               .from(0)
-              .also("check info"),
+              .also("check info picture"),
           [](auto& o) -> auto& { return o.image.choice.series; }),
       intake_choice<Kind>(
           about_intake("kind", kGroup,
                        "What the voxels hold; auto: labels if they are whole numbers that neighbours mostly share")
               .called("image")
               .written("image")
-              .also("check"),
+              .also("check picture"),
           [](auto& o) -> auto& { return o.image.regions.kind; },
           {{"auto", Kind::kAuto}, {"labels", Kind::kLabels}, {"grey", Kind::kGrey}}),
       intake_row(
@@ -167,13 +167,13 @@ std::vector<Row<IntakeOptions>> image_rows() {
                        "Pieces of regions below this volume go to what surrounds them; each region keeps its largest")
               .takes("V")
               .from(0)
-              .also("check"),
+              .also("check picture"),
           [](auto& o) -> auto& { return o.image.regions.clean.islands; }),
       intake_row(
           about_intake("holes", kGroup, "Pieces of the outside below this volume, not at the image's edge, are filled")
               .takes("V")
               .from(0)
-              .also("check"),
+              .also("check picture"),
           [](auto& o) -> auto& { return o.image.regions.clean.holes; }),
       intake_row(
           about_intake("specks", kGroup,
@@ -182,7 +182,7 @@ std::vector<Row<IntakeOptions>> image_rows() {
               .takes("V")
               .from(0)
               .without("an element of the size, if one is given")
-              .also("check"),
+              .also("check picture"),
           [](auto& o) -> auto& { return o.image.specks; }),
       intake_row(
           about_intake("close_voxels", kGroup,
@@ -190,12 +190,12 @@ std::vector<Row<IntakeOptions>> image_rows() {
               .takes("N")
               .from(0)
               .to(64)
-              .also("check"),
+              .also("check picture"),
           [](auto& o) -> auto& { return o.image.regions.clean.closing; }),
       intake_row(
           about_intake("closed_at_box", kGroup,
                        "What reaches the edge of the image ends flat there, which is said; false: it is refused")
-              .also("check"),
+              .also("check picture"),
           [](auto& o) -> auto& { return o.image.regions.closed_at_box; }),
   };
 }

@@ -341,11 +341,13 @@ std::vector<Row<Options>> improve_rows() {
           [](auto& o) -> auto& { return o.improve.seconds; }),
       row(
           [&] {
-            About order = of("order",
-                             "2: elements of second order, with mid-side nodes; those of the boundary on the smooth "
-                             "surface that the input stands for, every element proven valid; 1: linear ones",
-                             "Elements");
-            order.choices = {"1", "2"};
+            About order =
+                of("order",
+                   "2, 3, 4: elements of this order, with nodes on their edges, faces and inside; those of the "
+                   "boundary on the smooth surface that the input stands for, every element proven valid; "
+                   "1: linear ones",
+                   "Elements");
+            order.choices = {"1", "2", "3", "4"};
             return order.common("2: elements of second order, curved to the surface");
           }(),
           [](auto& o) -> auto& { return o.order; }),
@@ -381,6 +383,43 @@ std::vector<Row<Options>> adapt_rows() {
              "around them")
               .takes("PLACE"),
           [](auto& o) -> auto& { return o.adapt.keep; }),
+      row(
+          of("least_piece",
+             "Pieces of regions that a level set cuts off go to what is around if their volume is smaller, in cubed "
+             "units of the input")
+              .takes("V")
+              .from(0),
+          [](auto& o) -> auto& { return o.adapt.least_piece; }),
+  };
+}
+
+std::vector<Row<Options>> carry_rows() {
+  const auto of = [](std::string_view name, std::string_view help) {
+    return About(name, "Fields", "improve adapt carry move", help);
+  };
+  return {
+      row(
+          of("linear_elements",
+             "Fields of elements vary linearly inside old elements, limited such that no new extremes come: of second "
+             "order where they are smooth"),
+          [](auto& o) -> auto& { return o.carry.linear_elements; }),
+      opposite(
+          of("free_integrals",
+             "Where the bodies differ, nothing is spread: fields of elements keep their values, and integrals change "
+             "with the volume (a modulus, a temperature)")
+              .called("keep_integrals"),
+          [](auto& o) -> auto& { return o.carry.keep_integrals; }),
+  };
+}
+
+std::vector<Row<Options>> move_rows() {
+  return {
+      row(
+          About("least_quality", "Motion", "move", "Quality (3 r / R) below which elements are mended between steps")
+              .takes("BETA")
+              .above(0)
+              .to(0.6),
+          [](auto& o) -> auto& { return o.move.least_quality; }),
   };
 }
 
@@ -412,8 +451,8 @@ std::vector<Row<Options>> require_rows() {
 }
 
 const std::vector<Row<Options>>& rows() {
-  static const auto all = all_of<Options>(
-      {size_rows(), surface_rows(), layer_rows(), volume_rows(), improve_rows(), adapt_rows(), require_rows()});
+  static const auto all = all_of<Options>({size_rows(), surface_rows(), layer_rows(), volume_rows(), improve_rows(),
+                                           adapt_rows(), carry_rows(), move_rows(), require_rows()});
   return all;
 }
 

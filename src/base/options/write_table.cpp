@@ -7,7 +7,7 @@ namespace octafront::options {
 namespace {
 
 About about_writing(std::string_view name, std::string_view help) {
-  return About(name, "Output", "mesh improve adapt", help).also("convert");
+  return About(name, "Output", "mesh improve adapt", help).also("carry move convert");
 }
 
 template <class Access>

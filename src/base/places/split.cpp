@@ -3,6 +3,7 @@
 
 #include "base/core/disjoint_sets.h"
 #include "base/core/wording.h"
+#include "base/geometry/tet_lattice.h"
 #include "base/mesh/adjacency.h"
 #include "base/mesh/quadratic_nodes.h"
 #include "base/places/places.h"
@@ -185,6 +186,9 @@ class NodeCopies {
   void for_each_node(const TetMesh& mesh, TetIndex t, const Visit& visit) const {
     for (const VertexIndex v : mesh.tets[t])
       if (marked_[v]) visit(v);
+    const std::size_t each = mesh.high_nodes_per_tet();
+    for (std::size_t k = 0; k < each; ++k)
+      if (const VertexIndex v = mesh.high_nodes[t * each + k]; marked_[v]) visit(v);
     if (!mesh.is_second_order()) return;
     for (const VertexIndex v : mesh.mid_nodes[t])
       if (marked_[v]) visit(v);
@@ -196,6 +200,10 @@ class NodeCopies {
     const int lacks = static_cast<int>(h % 4);
     for (int i = 0; i < 4; ++i)
       if (i != lacks) visit(mesh.tets[t][static_cast<std::size_t>(i)]);
+    const std::size_t each = mesh.high_nodes_per_tet();
+    const TetLattice& lattice = tet_lattice(mesh.order());
+    for (std::size_t k = 0; k < each; ++k)
+      if (lattice.weights(4 + k)[static_cast<std::size_t>(lacks)] == 0) visit(mesh.high_nodes[t * each + k]);
     if (!mesh.is_second_order()) return;
     for (std::size_t e = 0; e < 6; ++e)
       if (kTetEdges[e][0] != lacks && kTetEdges[e][1] != lacks) visit(mesh.mid_nodes[t][e]);
@@ -237,6 +245,7 @@ class NodeCopies {
     corners_ = mesh.points.size();
     for (const auto& mids : mesh.mid_nodes)
       for (const VertexIndex v : mids) corners_ = std::min<std::size_t>(corners_, v);
+    for (const VertexIndex v : mesh.high_nodes) corners_ = std::min<std::size_t>(corners_, v);
     points_ = mesh.points.size();
     extra_corners_ = static_cast<VertexIndex>(
         std::lower_bound(extra_.begin(), extra_.end(), static_cast<VertexIndex>(corners_)) - extra_.begin());
@@ -323,6 +332,7 @@ class Splitting {
     TetMesh faces;
     faces.tets = mesh.tets;
     faces.mid_nodes = mesh.mid_nodes;
+    faces.high_nodes = mesh.high_nodes, faces.high_order = mesh.high_order;
     faces.boundary = mesh.boundary;
     faces.interfaces = mesh.interfaces;
     faces.interface_patch = mesh.interface_patch;
@@ -358,6 +368,11 @@ class Splitting {
   void move_elements() {
     for (TetIndex t = 0; t < mesh_.tets.size(); ++t) {
       for (VertexIndex& v : mesh_.tets[t]) v = copies_->at(t, v);
+      const std::size_t each = mesh_.high_nodes_per_tet();
+      for (std::size_t k = 0; k < each; ++k) {
+        VertexIndex& v = mesh_.high_nodes[t * each + k];
+        v = copies_->at(t, v);
+      }
       if (!mesh_.is_second_order()) continue;
       for (VertexIndex& v : mesh_.mid_nodes[t]) v = copies_->at(t, v);
     }

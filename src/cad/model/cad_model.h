@@ -113,6 +113,7 @@ struct CadEdge {
 struct Solid {
   Labels labels;
   std::string product, material;  ///< what it is an occurrence of, and made of, by name; empty: the file does not say
+  double density = 0;             ///< kg/m3; 0: the file does not say
   double volume = 0, area = 0;    ///< of the true solid
   bool closed = false;            ///< its triangles are: by topology
 };

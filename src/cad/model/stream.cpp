@@ -122,7 +122,7 @@ void fields(Ar& ar, T& it) {
 }
 template <class Ar, Of<Solid> T>
 void fields(Ar& ar, T& it) {
-  ar(it.labels), ar(it.product), ar(it.material), ar(it.volume), ar(it.area), ar(it.closed);
+  ar(it.labels), ar(it.product), ar(it.material), ar(it.density), ar(it.volume), ar(it.area), ar(it.closed);
 }
 template <class Ar, Of<CadModel> T>
 void fields(Ar& ar, T& it) {

@@ -1,4 +1,5 @@
 #include <octafront/cad.h>
+#include <octafront/limits.h>
 
 #include <algorithm>
 #include <cctype>
@@ -31,6 +32,7 @@ bool is_cad(const std::string& file) {
   // A pipe has no beginning to look at: what is read there is gone.
   std::error_code error;
   if (!std::filesystem::is_regular_file(file, error)) return false;
+  require_in_folders(file);
   std::string head(kLooked, '\0');
   std::ifstream in(std::filesystem::path(file), std::ios::binary);
   in.read(head.data(), kLooked);

@@ -44,6 +44,7 @@ void visit_mesh_array(Mesh& mesh, std::string_view name, const Visit& visit) {
   if (name == "curve_edges") return visit(mesh.curve_edges);
   if (name == "curve") return visit(mesh.curve);
   if (name == "mid_nodes") return visit(mesh.mid_nodes);
+  if (name == "high_nodes") return visit(mesh.high_nodes);
   if (name == "wide_cells") return visit(mesh.wide_cells);
   if (name == "wide_faces") return visit(mesh.wide_faces);
   if (name == "split_faces") return visit(mesh.split_faces);
@@ -108,6 +109,18 @@ void require_wide_range(const TetMesh& m) {
   }
 }
 
+/// By how many high nodes there are.
+std::uint32_t high_order_of(const TetMesh& m) {
+  const std::size_t each = m.tets.empty() ? 0 : m.high_nodes.size() / m.tets.size();
+  if (m.high_nodes.empty()) return 0;
+  if ((each != 16 && each != 31) || each * m.tets.size() != m.high_nodes.size())
+    throw InputError(
+        fmt::format("high_nodes has {} values for {} tets, which come first: give 16 each (order 3), or 31 "
+                    "(order 4)",
+                    m.high_nodes.size(), m.tets.size()));
+  return each == 16 ? 3 : 4;
+}
+
 void require_finite_points(const std::vector<Vec3>& points) {
   for (std::size_t i = 0; i < points.size(); ++i)
     if (!is_finite(points[i]))
@@ -132,6 +145,8 @@ void require_indices(const TetMesh& m) {
   require_range(m.interfaces, m.points.size(), "interface");
   require_range(m.curve_edges, m.points.size(), "curve edge");
   require_range(m.mid_nodes, m.points.size(), "row of mid_nodes");
+  for (const VertexIndex v : m.high_nodes)
+    if (v >= m.points.size()) throw InputError(fmt::format("high_nodes names point {} of {}", v, m.points.size()));
   require_wide_range(m);
   for (const auto& [period, copy, original] : m.periodic_nodes)
     if (period >= m.periods.size() || copy >= m.points.size() || original >= m.points.size())
@@ -201,7 +216,10 @@ int octafront_mesh_array(const octafront_mesh* mesh, const char* name, octafront
 }
 
 int octafront_mesh_set_array(octafront_mesh* mesh, const char* name, const void* data, size_t rows) {
-  return guarded([&] { visit_mesh_array(mesh->mesh, name, [&](auto& list) { assign(list, data, rows); }); });
+  return guarded([&] {
+    visit_mesh_array(mesh->mesh, name, [&](auto& list) { assign(list, data, rows); });
+    if (std::string_view(name) == "high_nodes") mesh->mesh.high_order = high_order_of(mesh->mesh);
+  });
 }
 
 int octafront_mesh_add_name(octafront_mesh* mesh, const char* list, const char* name, size_t length) {

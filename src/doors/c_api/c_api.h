@@ -6,6 +6,7 @@
 
 #include <octafront/domain.h>
 #include <octafront/image.h>
+#include <octafront/mesh_field.h>
 #include <octafront/octafront_c.h>
 #include <octafront/options.h>
 #include <octafront/size_field.h>
@@ -24,6 +25,8 @@ struct octafront_mesh {
   octafront::TetMesh mesh;
   /// Of a mesh that was adapted: AdaptedMesh::old_of_new and old_tet_of_new.
   std::vector<std::uint32_t> old_of_new = {}, old_tet_of_new = {};
+  /// Of a mesh that was moved: MovedMesh::fields.
+  std::vector<octafront::MeshField> fields = {};
 };
 
 struct octafront_sizes {

@@ -2,11 +2,14 @@
 
 #include <octafront/adapt.h>
 #include <octafront/cad.h>
+#include <octafront/carry.h>
 #include <octafront/complex.h>
 #include <octafront/error.h>
 #include <octafront/generate.h>
 #include <octafront/improve_existing.h>
 #include <octafront/io.h>
+#include <octafront/level_set.h>
+#include <octafront/move.h>
 #include <octafront/option_table.h>
 #include <octafront/repair.h>
 #include <octafront/report_page.h>
@@ -106,7 +109,7 @@ void check(octafront_job& job, const TetMesh& mesh, const std::string& solver) {
   const auto defect = first_defect(mesh, job.context());
   job.report["valid"] = !defect;
   job.report["defect"] = defect ? Json(*defect) : Json(nullptr);
-  if (mesh.is_second_order()) job.report["second_order"] = Json::parse(to_json(check_jacobians(mesh, job.context())));
+  if (mesh.order() > 1) job.report["second_order"] = Json::parse(to_json(check_jacobians(mesh, job.context())));
   Json groups = Json::array();
   for (const GroupInfo& g : groups_of(mesh))
     groups.push_back({{"origin", g.origin}, {"name", g.name}, {"size", g.size}});
@@ -311,6 +314,80 @@ octafront_job* octafront_adapt(const octafront_mesh* mesh, const octafront_surfa
         give_adapted(job, adapt_existing(mesh->mesh, job.options_of(options), job.context(), domain_of(ground)));
       },
       threads);
+}
+
+namespace {
+
+std::vector<MeshField> fields_from(const octafront_field* fields, std::size_t count, const TetMesh& mesh) {
+  std::vector<MeshField> all;
+  for (const octafront_field* f = fields; f != fields + count; ++f) {
+    const std::size_t items = f->of_elements != 0 ? mesh.tets.size() : mesh.points.size();
+    all.push_back({f->name, f->of_elements != 0, f->components, {f->values, f->values + items * f->components}});
+  }
+  return all;
+}
+
+}  // namespace
+
+octafront_job* octafront_cut(const octafront_mesh* mesh, const octafront_level_set* level_sets, size_t count,
+                             const octafront_options* options, int threads) {
+  return started(
+      [=](octafront_job& job) {
+        require_indices(mesh->mesh);
+        std::vector<LevelSet> sets;
+        for (const octafront_level_set* s = level_sets; s != level_sets + count; ++s)
+          sets.push_back({s->name, {s->values, s->values + mesh->mesh.points.size()}, s->level});
+        CutMesh made = cut_along(mesh->mesh, sets, {job.options_of(options).adapt.least_piece}, job.context());
+        job.report["level_sets"] = Json::parse(to_json(made.level_sets));
+        give(job, std::move(made.mesh));
+      },
+      threads);
+}
+
+octafront_job* octafront_carry(const octafront_mesh* before, const octafront_mesh* now, int adapted,
+                               const octafront_field* fields, size_t count, const octafront_options* options,
+                               int threads) {
+  return started(
+      [=](octafront_job& job) {
+        require_indices(before->mesh), require_indices(now->mesh);
+        const std::vector<MeshField> old = fields_from(fields, count, before->mesh);
+        const KnownItems same{now->old_of_new, now->old_tet_of_new};
+        const bool is_known = adapted != 0 && same.old_of_new.size() == now->mesh.points.size() &&
+                              same.old_tet_of_new.size() == now->mesh.tets.size();
+        const CarriedFields made =
+            carry_fields(old, before->mesh, now->mesh, job.options_of(options).carry, job.context(),
+                         adapted != 0 ? OutsideNodes::kOnwards : OutsideNodes::kNearest, is_known ? &same : nullptr);
+        job.report["carry"] = Json::parse(to_json(made.report));
+        job.report["carried"] = Json::parse(fields_to_json(made.report));
+        for (std::size_t f = 0; f < count; ++f)
+          std::copy(made.fields[f].values.begin(), made.fields[f].values.end(), fields[f].out);
+      },
+      threads);
+}
+
+octafront_job* octafront_move(const octafront_mesh* mesh, const double* displacement, const octafront_field* fields,
+                              size_t count, const octafront_options* options, int threads) {
+  return started(
+      [=](octafront_job& job) {
+        require_indices(mesh->mesh);
+        std::vector<Vec3> by;
+        for (std::size_t v = 0; v < mesh->mesh.points.size(); ++v)
+          by.push_back({displacement[3 * v], displacement[3 * v + 1], displacement[3 * v + 2]});
+        MovedMesh moved =
+            move_mesh(mesh->mesh, by, fields_from(fields, count, mesh->mesh), job.options_of(options), job.context());
+        job.report["history"] = Json::parse(to_json(moved.history));
+        give(job, std::move(moved.mesh));
+        job.mesh->fields = std::move(moved.fields);
+      },
+      threads);
+}
+
+int octafront_mesh_field(const octafront_mesh* mesh, size_t i, octafront_array* values) {
+  return guarded([&] {
+    const MeshField& field = mesh->fields.at(i);
+    *values = {field.values.data(), field.values.size() / field.components,
+               static_cast<std::uint32_t>(field.components), OCTAFRONT_F64};
+  });
 }
 
 octafront_job* octafront_repair(const octafront_surface* surface) {

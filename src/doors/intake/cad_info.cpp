@@ -27,7 +27,7 @@ class CadTeller {
     for (std::size_t s = 0; s < solids_.size(); ++s) {
       const cad::Solid& solid = model_.solids[s];
       all.push_back({solids_[s], solid.labels.layer, solid.volume / (unit_ * unit_ * unit_), area(solid.area),
-                     colour_of(solid.labels), solid.product, solid.material});
+                     colour_of(solid.labels), solid.product, solid.material, solid.density});
     }
     return all;
   }

@@ -1,4 +1,5 @@
 #include <octafront/error.h>
+#include <octafront/limits.h>
 
 #include "base/core/doubles.h"
 #include "doors/intake/intake.h"
@@ -37,6 +38,7 @@ std::optional<ContactChoice::Rule> rule_in(const std::string& text) {
 
 /// One in each line; empty lines, and those that begin with #, say nothing.
 void read_rules(const std::string& file, std::vector<ContactChoice::Rule>& rules) {
+  require_in_folders(file);
   std::ifstream in(file);
   if (!in)
     throw OptionError(fmt::format(

@@ -44,6 +44,7 @@ std::string to_json(const CadInfo& info) {
     for (const auto& [key, text] : {std::pair{"layer", &solid.layer}, std::pair{"color", &solid.color},
                                     std::pair{"product", &solid.product}, std::pair{"material", &solid.material}})
       if (!text->empty()) solids.back()[key] = *text;
+    if (solid.density > 0) solids.back()["density"] = solid.density;
   }
   Json patches = Json::array();
   for (const CadInfo::Patch& patch : info.patches)

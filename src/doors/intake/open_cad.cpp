@@ -354,6 +354,14 @@ std::vector<double> depths_of_solids(const CadModel& model) {
   return bound;
 }
 
+std::vector<std::pair<std::string, double>> densities_of_solids(const CadModel& model) {
+  std::vector<std::pair<std::string, double>> all;
+  const std::vector<std::string> names = cad::solid_names(model);
+  for (std::size_t s = 0; s < names.size(); ++s)
+    if (model.solids[s].density > 0) all.emplace_back(names[s], model.solids[s].density);
+  return all;
+}
+
 /// From the model's unit to the one that is asked for.
 void convert(std::vector<Vec3>& points, double unit) {
   for (Vec3& p : points) p = p / unit;
@@ -408,6 +416,7 @@ CadTaken take_cad(Domain& domain, const IntakeOptions& options, const std::strin
   const double unit = unit_of(made.model, options.cad);
   for (const double d : depths_of_solids(made.model)) domain.chord_depths.push_back(d / unit);
   for (const Solid& solid : made.model.solids) domain.true_volumes.push_back(solid.volume / (unit * unit * unit));
+  domain.densities = densities_of_solids(made.model);
   domain.surface = std::move(made.surface), domain.unit = options.cad.unit;
   convert(domain.surface.points, unit);
   for (Body& body : taken.bodies) convert(body.surface.points, unit);

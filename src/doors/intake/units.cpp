@@ -1,5 +1,6 @@
 #include <octafront/cad.h>
 #include <octafront/image.h>
+#include <octafront/limits.h>
 #include <octafront/units.h>
 
 #include "formats/containers/scanner.h"
@@ -22,6 +23,7 @@ std::string unit_of_image(const std::string& file) {
 std::string beginning_of(const std::string& file) {
   constexpr std::size_t kBeginning = 4096;
   std::string text(kBeginning, '\0');
+  require_in_folders(file);
   std::ifstream in(std::filesystem::path(file), std::ios::binary);
   in.read(text.data(), static_cast<std::streamsize>(text.size()));
   text.resize(static_cast<std::size_t>(in.gcount()));

@@ -1,6 +1,7 @@
 #include "formats/containers/atomic_file.h"
 
 #include <octafront/error.h>
+#include <octafront/limits.h>
 
 #include "base/core/files_of_windows.h"
 #include "base/core/parallel.h"
@@ -98,6 +99,7 @@ fs::path links_followed(const fs::path& file) {
 
 void check_writable(const fs::path& target) {
   const std::string name = target.string();
+  require_in_folders(name);
   const fs::path file = links_followed(target);
   const fs::path folder = folder_of(file);
   std::error_code error;
@@ -118,6 +120,7 @@ void check_folder_writable(const fs::path& target) {
   const std::string name = target.string();
   std::error_code error;
   if (!fs::exists(target, error)) return check_writable(target);
+  require_in_folders(target.string());
   if (!fs::is_directory(target, error)) throw OutputError(name + ": cannot be written: it is no folder");
   if (!fs::is_empty(target, error) && !fs::exists(target / "faces", error))
     throw OutputError(name + ": cannot be written: the folder has other files, which would be lost; give another name");
@@ -126,6 +129,7 @@ void check_folder_writable(const fs::path& target) {
 void check_folder_of_pieces(const fs::path& target, const std::string& stem, const std::string& extension) {
   std::error_code error;
   if (!fs::exists(target, error)) return check_writable(target);
+  require_in_folders(target.string());
   if (!fs::is_directory(target, error))
     throw OutputError(target.string() + ": cannot be written: it is no folder, which the pieces need");
   for (const fs::directory_entry& entry : fs::directory_iterator(target)) {

@@ -1,6 +1,7 @@
 #include "formats/containers/hdf5_file.h"
 
 #include <octafront/error.h>
+#include <octafront/limits.h>
 
 #include <algorithm>
 #include <array>
@@ -209,6 +210,7 @@ void Hdf5Writer::close() {
 Hdf5Reader::Hdf5Reader(const std::filesystem::path& file, std::string name, RunContext context)
     : name_(std::move(name)), context_(std::move(context)) {
   prepare_library();
+  require_in_folders(file.string());
   std::error_code error;
   file_bytes_ = std::filesystem::file_size(file, error);
   if (error) fail(fmt::format("{} cannot be opened: {}", file.string(), error.message()));

@@ -1,6 +1,7 @@
 #include "formats/containers/input.h"
 
 #include <octafront/error.h>
+#include <octafront/limits.h>
 
 #include "base/core/files_of_windows.h"
 
@@ -132,6 +133,7 @@ void ReadingProgress::tell(const char* at) {
 LoadedFile::LoadedFile(const std::filesystem::path& file, const RunContext& context) {
   input_.name = file.string();
   input_.context = context;
+  require_in_folders(input_.name);
   // A pipe that nobody writes to would block the opening, where nothing could cancel it.
   const Descriptor fd(::open(file.c_str(), O_RDONLY | O_CLOEXEC | O_NONBLOCK));
   if (fd.get() < 0) {

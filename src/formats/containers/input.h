@@ -26,6 +26,8 @@ struct Input {
   const std::string* field = nullptr;
   /// Fields of tensors at points are asked for: of 6 or 9 numbers; of single numbers those that are named.
   bool wants_tensors = false;
+  /// Of a field that is asked for by its name also elements may have several numbers.
+  bool wants_element_tensors = false;
 
   /// Throws InputError "NAME: message".
   [[noreturn]] void fail(std::string_view message) const;

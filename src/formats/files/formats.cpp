@@ -84,6 +84,10 @@ constexpr FormatHolds kNumbersOnly{.regions = Keeps::kNumbers,
                                    .interfaces = true,
                                    .second_order = true};
 
+constexpr FormatHolds all_orders(FormatHolds holds) {
+  holds.high_order = true;
+  return holds;
+}
 constexpr FormatHolds binary(FormatHolds holds) {
   holds.binary = true;
   return holds;
@@ -178,18 +182,18 @@ constexpr std::array kFormats{
                       told_freesurfer, read_freesurfer)),
     read_only(surface("poly", "TetGen PLC", ".poly .smesh",
                       "facets, with markers as patches, regions and holes; read only", nullptr, told_poly, read_poly)),
-    with_polyhedra(read(with_fields(with_wedges(or_text(mesh("vtu", "VTU", ".vtu", binary(kAll),
+    with_polyhedra(read(with_fields(with_wedges(or_text(mesh("vtu", "VTU", ".vtu", all_orders(binary(kAll)),
                                                              "VTK unstructured grid, compressed or text: numbers, "
                                                              "names and sets as arrays; beta per element",
                                                              write_vtu)))),
                         told_vtu, read_vtu),
                    write_vtu_polyhedra),
-    read(with_parts(with_fields(with_wedges(or_text(mesh("msh", "Gmsh MSH 4.1", ".msh", binary(kAll),
+    read(with_parts(with_fields(with_wedges(or_text(mesh("msh", "Gmsh MSH 4.1", ".msh", all_orders(binary(kAll)),
                                                          "binary or text: all as physical groups", write_msh)))),
                     write_msh_parts),
          told_msh, read_msh),
     read(with_fields(
-             with_wedges(or_text(mesh("msh22", "Gmsh MSH 2.2", "", binary(without_sets(kAll)),
+             with_wedges(or_text(mesh("msh22", "Gmsh MSH 2.2", "", all_orders(binary(without_sets(kAll))),
                                       "binary or text: regions, patches, curves as physical groups", write_msh2)))),
          nullptr, read_msh),
     with_fields(or_text(mesh("simnibs", "SimNIBS (MSH 2.2)", "", binary(kTissues),

@@ -23,6 +23,9 @@ class Losses {
     if (!holds.second_order && mesh_.mesh().is_second_order())
       lose(fmt::format("holds linear elements only: {} mid-side nodes are left out",
                        mesh_.mesh().points.size() - mesh_.points()));
+    if (!holds.high_order && mesh_.mesh().high_order > 0)
+      lose(fmt::format("holds no elements of order {}: {} nodes are left out, and elements are linear",
+                       mesh_.mesh().order(), mesh_.mesh().points.size() - mesh_.points()));
     if (const std::size_t wide = mesh_.mesh().wide_cells.size(); mesh_.wide_cells().size() < wide)
       lose(fmt::format("is given no wedges and pyramids{} here: {} are written as their tetrahedra",
                        holds.wide_cells ? " of second order" : "", wide));

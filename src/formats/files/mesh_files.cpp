@@ -202,12 +202,15 @@ std::vector<std::string> write_mesh(const std::string& file, const TetMesh& give
   const io::JobMesh for_job = options.job ? io::mesh_for_job(given_mesh, *options.job) : io::JobMesh{};
   const TetMesh& mesh = for_job.changed ? *for_job.changed : given_mesh;
   const io::WithoutDiagonals without = is_curved ? io::without_diagonals(mesh) : io::WithoutDiagonals{};
-  const io::MeshParts parts(without.mesh ? *without.mesh : mesh, {.mid_nodes = !holds.second_order,
-                                                                  .faces = options.cells_only,
-                                                                  .wide_cells = !is_wide,
-                                                                  .last_points = without.diagonals});
+  const io::MeshParts parts(without.mesh ? *without.mesh : mesh,
+                            {.mid_nodes = mesh.high_order > 0 ? !holds.high_order : !holds.second_order,
+                             .faces = options.cells_only,
+                             .wide_cells = !is_wide,
+                             .last_points = without.diagonals});
   if (goes_in_parts(format, options) && mesh.tets.empty())
     throw OptionError(fmt::format("{}: a mesh without volume elements is not written in parts", file));
+  if (goes_in_parts(format, options) && mesh.high_order > 0)
+    throw OptionError(fmt::format("{}: a mesh of order {} is not written in parts", file, mesh.order()));
   if (options.polyhedral && mesh.tets.empty())
     throw OptionError(fmt::format("{}: a mesh without volume elements has no polyhedra", file));
   const bool wedges_in_parts = goes_in_parts(format, options) && !parts.wide_cells().empty();

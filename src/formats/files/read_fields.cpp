@@ -21,7 +21,7 @@ constexpr std::string_view kOwn = "beta";
 io::RawMesh read_with(const io::Input& input, const std::string& field) {
   io::Input asked = input;
   asked.field = &field;
-  asked.wants_tensors = true;
+  asked.wants_tensors = asked.wants_element_tensors = true;
   return read_with_field(asked);
 }
 
@@ -41,9 +41,10 @@ class FieldTaker {
     const std::size_t before = out.fields.size();
     const std::size_t n = raw.points.empty() ? 0 : raw.field.at_points.size() / raw.points.size();
     const bool has_tets = !raw.field.at_tets.empty();
+    const std::size_t of_tet = raw.tets.empty() ? 0 : raw.field.at_tets.size() / raw.tets.size();
     if (n == 0 && !has_tets) leave_out(name, "it has not one for each point, or each tetrahedron");
     if (n > 0) add({name, false, n, std::move(raw.field.at_points)}, n * mesh_.points.size());
-    if (has_tets) add({name, true, 1, std::move(raw.field.at_tets)}, mesh_.tets.size());
+    if (has_tets) add({name, true, of_tet, std::move(raw.field.at_tets)}, of_tet * mesh_.tets.size());
     if (is_strict_ && out.fields.size() == before)
       input_.fail(fmt::format("the field {} cannot be carried: {}", io::in_quotes(name), why_));
   }

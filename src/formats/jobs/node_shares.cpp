@@ -89,7 +89,7 @@ class FaceShares {
 FaceShares shares_on(const MeshParts& mesh, const Part& part) {
   const MixedCells cells(mesh);
   FaceShares shares(mesh);
-  std::array<VertexIndex, 8> room;
+  FaceRoom room;
   for (const std::uint32_t f : cells.members(part)) shares.add(cells.face_nodes(f, room));
   return shares;
 }

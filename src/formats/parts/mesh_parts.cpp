@@ -18,7 +18,7 @@ namespace {
 constexpr std::array kOrigins{Part::Origin::kRegion, Part::Origin::kPatch, Part::Origin::kCurve};
 
 std::size_t corner_points(const TetMesh& mesh) {
-  if (!mesh.is_second_order()) return mesh.points.size();
+  if (mesh.order() == 1) return mesh.points.size();
   VertexIndex corners = 0;
   for (const Tet& t : mesh.tets) corners = std::max(corners, 1 + *std::max_element(t.begin(), t.end()));
   return corners;
@@ -48,8 +48,10 @@ MeshParts::MeshParts(const TetMesh& mesh, Hidden hidden)
     : mesh_(mesh),
       hidden_(hidden),
       second_order_(mesh.is_second_order() && !hidden.mid_nodes),
+      order_(hidden.mid_nodes ? 1 : mesh.order()),
       points_(hidden.mid_nodes ? corner_points(mesh) : mesh.points.size() - hidden.last_points),
-      mids_(second_order_ ? mesh : empty_mesh()) {
+      mids_(second_order_ ? mesh : empty_mesh()),
+      high_(order_ > 2 ? mesh : empty_mesh()) {
   const std::array<std::uint32_t, 3> counts{static_cast<std::uint32_t>(tets()), static_cast<std::uint32_t>(faces()),
                                             static_cast<std::uint32_t>(edges())};
   const std::array<const std::vector<std::string>*, 3> names{&mesh.region_names, &mesh.patch_names, &mesh.curve_names};
@@ -118,17 +120,17 @@ std::span<const Part> MeshParts::parts(Part::Origin origin) const {
                                    static_cast<std::size_t>(last - first));
 }
 
-std::span<const VertexIndex> MeshParts::tet_nodes(std::size_t t, std::array<VertexIndex, 10>& room) const {
+std::span<const VertexIndex> MeshParts::tet_nodes(std::size_t t, CellRoom& room) const {
   for (std::size_t k = 0; k < nodes_per_tet(); ++k) room[k] = tet_node(t, k);
   return std::span(room).first(nodes_per_tet());
 }
 
-std::span<const VertexIndex> MeshParts::face_nodes(std::size_t f, std::array<VertexIndex, 6>& room) const {
+std::span<const VertexIndex> MeshParts::face_nodes(std::size_t f, FaceRoom& room) const {
   for (std::size_t k = 0; k < nodes_per_face(); ++k) room[k] = face_node(f, k);
   return std::span(room).first(nodes_per_face());
 }
 
-std::span<const VertexIndex> MeshParts::edge_nodes(std::size_t e, std::array<VertexIndex, 3>& room) const {
+std::span<const VertexIndex> MeshParts::edge_nodes(std::size_t e, EdgeRoom& room) const {
   for (std::size_t k = 0; k < nodes_per_edge(); ++k) room[k] = edge_node(e, k);
   return std::span(room).first(nodes_per_edge());
 }
@@ -204,9 +206,9 @@ std::vector<VertexIndex> MeshParts::nodes_of(const Part& part) const {
     for (const VertexIndex v : nodes)
       if (v < points_) is_of[v] = true;
   };
-  std::array<VertexIndex, 10> tet;
-  std::array<VertexIndex, 6> face_room;
-  std::array<VertexIndex, 3> edge;
+  CellRoom tet;
+  FaceRoom face_room;
+  EdgeRoom edge;
   for (const std::uint32_t m : part.members) {
     switch (part.kind) {
       case NamedSet::Kind::kNodes:

@@ -8,8 +8,10 @@
 
 #include "base/core/groups.h"
 #include "base/core/utf8.h"
+#include "base/geometry/tet_lattice.h"
 #include "base/mesh/edge_nodes.h"
 #include "base/mesh/label_at.h"
+#include "formats/parts/high_nodes.h"
 
 #include <algorithm>
 #include <array>
@@ -41,13 +43,18 @@ struct Side {
   int face;
 };
 
+/// Room for the nodes of an element, face or edge of any order.
+using CellRoom = std::array<VertexIndex, 35>;
+using FaceRoom = std::array<VertexIndex, 15>;
+using EdgeRoom = std::array<VertexIndex, 5>;
+
 /// A mesh as writers see it: the boundary and the interfaces as one list of faces, and all that has a number or name as
 /// one list of parts, which every format turns into sets of its own. Refers to the mesh. O(mesh).
 class MeshParts {
  public:
   /// What writers are not shown.
   struct Hidden {
-    bool mid_nodes = false;  ///< and the points that are nothing else
+    bool mid_nodes = false;  ///< those behind the corners, of any order, and the points that are nothing else
     bool faces = false;      ///< and edges, and all parts of them
     bool wide_cells = false;
     std::size_t last_points = 0;  ///< so many at the end, which are mid-side nodes
@@ -96,28 +103,34 @@ class MeshParts {
   }
   std::uint32_t curve_of(std::size_t e) const { return mesh_.curve.empty() ? 0 : mesh_.curve[e]; }
 
-  /// Corners and, at second order, mid-side nodes, in the order of VTK (edges 12 23 13 14 24 34; 12 23 31; 12).
-  std::span<const VertexIndex> tet_nodes(std::size_t t, std::array<VertexIndex, 10>& room) const;
-  std::span<const VertexIndex> face_nodes(std::size_t f, std::array<VertexIndex, 6>& room) const;
-  std::span<const VertexIndex> edge_nodes(std::size_t e, std::array<VertexIndex, 3>& room) const;
+  /// Corners and, at second order, mid-side nodes, in the order of VTK (edges 12 23 13 14 24 34; 12 23 31; 12). At
+  /// order 3 and 4 that of VTK's Lagrange cells: of edges 12 23 31 14 24 34, of faces, inside.
+  std::span<const VertexIndex> tet_nodes(std::size_t t, CellRoom& room) const;
+  std::span<const VertexIndex> face_nodes(std::size_t f, FaceRoom& room) const;
+  std::span<const VertexIndex> edge_nodes(std::size_t e, EdgeRoom& room) const;
   /// One of them.
   VertexIndex tet_node(std::size_t t, std::size_t k) const {
     constexpr std::array<std::uint8_t, 6> kMids{0, 3, 1, 2, 4, 5};  // of kTetEdges
+    if (order_ > 2) return high_.of_tet(t, k);
     return k < 4 ? mesh_.tets[t][k] : mesh_.mid_nodes[t][kMids[k - 4]];
   }
   VertexIndex face_node(std::size_t f, std::size_t k) const {
     const Triangle& t = face(f);
+    if (order_ > 2) return high_.of_face(sides()[f], t, k);
     return k < 3 ? t[k] : mids_(t[k - 3], t[(k - 2) % 3]);
   }
   VertexIndex edge_node(std::size_t e, std::size_t k) const {
     const Edge& edge = mesh_.curve_edges[e];
+    if (order_ > 2) return high_.of_edge(edge, k);
     return k < 2 ? edge[k] : mids_(edge[0], edge[1]);
   }
   /// Of an edge between vertices of faces or curves.
   VertexIndex mid_node(VertexIndex a, VertexIndex b) const { return mids_(a, b); }
-  std::size_t nodes_per_tet() const { return second_order_ ? 10 : 4; }
-  std::size_t nodes_per_face() const { return second_order_ ? 6 : 3; }
-  std::size_t nodes_per_edge() const { return second_order_ ? 3 : 2; }
+  std::size_t nodes_per_tet() const { return octafront::nodes_of_tet(order_); }
+  std::size_t nodes_per_face() const { return static_cast<std::size_t>((order_ + 1) * (order_ + 2) / 2); }
+  std::size_t nodes_per_edge() const { return static_cast<std::size_t>(order_ + 1); }
+  /// 1 to 4: that of the elements that are written.
+  int order() const { return order_; }
 
   /// Per face the tetrahedron that it looks out of (for an interface one of its two). Made at the first call.
   const std::vector<Side>& sides() const;
@@ -144,8 +157,10 @@ class MeshParts {
   const TetMesh& mesh_;
   Hidden hidden_;
   bool second_order_;
+  int order_;
   std::size_t points_;
   EdgeNodes mids_;
+  HighNodes high_;
   std::array<Groups<>, 3> groups_;
   std::array<std::vector<std::uint32_t>, 3> numbers_;
   std::vector<Part> parts_;

@@ -63,7 +63,7 @@ MixedCells::MixedCells(const MeshParts& mesh) : mesh_(mesh) {
 
 std::size_t MixedCells::nodes_per(Kind kind) const {
   constexpr std::array<std::array<std::size_t, kKinds>, 2> kNodes{{{4, 5, 6}, {10, 13, 15}}};
-  return kNodes[mesh_.second_order()][kind];
+  return kind == kTet ? mesh_.nodes_per_tet() : kNodes[mesh_.second_order()][kind];
 }
 
 TetIndex MixedCells::first_tet(std::size_t cell) const {
@@ -76,8 +76,7 @@ VertexIndex MixedCells::node(std::size_t cell, std::size_t k, const WideOrder& o
   return node_of(mesh_.mesh(), wide(cell), order.of(cell >= end_[kPyramid])[k]);
 }
 
-std::span<const VertexIndex> MixedCells::nodes(std::size_t cell, std::array<VertexIndex, 15>& room,
-                                               const WideOrder& order) const {
+std::span<const VertexIndex> MixedCells::nodes(std::size_t cell, CellRoom& room, const WideOrder& order) const {
   const std::size_t count = nodes_per(kind(cell));
   for (std::size_t k = 0; k < count; ++k) room[k] = node(cell, k, order);
   return std::span(room).first(count);
@@ -86,7 +85,7 @@ std::span<const VertexIndex> MixedCells::nodes(std::size_t cell, std::array<Vert
 std::size_t MixedCells::side_of(std::size_t cell, std::size_t face) const {
   const WideCell& of = wide(cell);
   const auto& sides = of.tet_count == 3 ? kWedgeFaces : kPyramidFaces;
-  std::array<VertexIndex, 8> room;
+  FaceRoom room;
   const auto corners = face_nodes(face, room).first(face < triangles() ? 3 : 4);
   for (std::size_t s = 0; s < sides.size(); ++s) {
     const auto has = [&](VertexIndex v) {
@@ -108,7 +107,7 @@ VertexIndex MixedCells::face_node(std::size_t face, std::size_t k) const {
   return k < 4 ? corners[k] : mesh_.mid_node(corners[k - 4], corners[(k - 3) % 4]);
 }
 
-std::span<const VertexIndex> MixedCells::face_nodes(std::size_t face, std::array<VertexIndex, 8>& room) const {
+std::span<const VertexIndex> MixedCells::face_nodes(std::size_t face, FaceRoom& room) const {
   const std::size_t count = face < triangles() ? mesh_.nodes_per_face() : nodes_per_quad();
   for (std::size_t k = 0; k < count; ++k) room[k] = face_node(face, k);
   return std::span(room).first(count);

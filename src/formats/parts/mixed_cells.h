@@ -33,8 +33,7 @@ class MixedCells {
   TetIndex first_tet(std::size_t cell) const;
   std::size_t cell_of(TetIndex tet) const { return cell_of_.empty() ? tet : cell_of_[tet]; }
   /// Of a tetrahedron as MeshParts has them; of a pyramid or wedge in the order of kPlainWide, or the one given.
-  std::span<const VertexIndex> nodes(std::size_t cell, std::array<VertexIndex, 15>& room,
-                                     const WideOrder& order = kPlainWide) const;
+  std::span<const VertexIndex> nodes(std::size_t cell, CellRoom& room, const WideOrder& order = kPlainWide) const;
   /// One of them.
   VertexIndex node(std::size_t cell, std::size_t k, const WideOrder& order = kPlainWide) const;
   const WideCell& wide(std::size_t cell) const { return mesh_.mesh().wide_cells[wide_[cell - end_[kTet]]]; }
@@ -49,7 +48,7 @@ class MixedCells {
   std::size_t first_face(std::size_t face) const;
   std::size_t face_of(std::size_t mesh_face) const { return face_of_.empty() ? mesh_face : face_of_[mesh_face]; }
   /// Corners, then mid-side nodes 12 23 31, of a quadrilateral 12 23 34 41.
-  std::span<const VertexIndex> face_nodes(std::size_t face, std::array<VertexIndex, 8>& room) const;
+  std::span<const VertexIndex> face_nodes(std::size_t face, FaceRoom& room) const;
   VertexIndex face_node(std::size_t face, std::size_t k) const;
 
   /// How many points or cells a field has values for; value k of one of them: a cell has that of its first tetrahedron.

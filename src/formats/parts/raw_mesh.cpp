@@ -1,6 +1,7 @@
 #include "formats/parts/raw_mesh.h"
 
 #include "base/geometry/predicates.h"
+#include "base/geometry/tet_lattice.h"
 #include "base/mesh/adjacency.h"
 #include "base/mesh/face_table.h"
 #include "base/mesh/label_at.h"
@@ -132,6 +133,81 @@ void check_mid_nodes(RawMesh& raw, const Input& input) {
                         v, t));
 }
 
+/// The nodes inside each edge and face of an element, from the least corner on, behind these corners.
+template <std::size_t kCorners, class Parts>
+std::vector<std::array<VertexIndex, kCorners + 3>> rows_of_parts(const RawMesh& raw, const Parts& parts) {
+  const int order = static_cast<int>(raw.high_order);
+  const TetLattice& lattice = tet_lattice(order);
+  const std::size_t inside = kCorners == 2 ? nodes_in_edge(order) : nodes_in_face(order);
+  std::vector<std::array<VertexIndex, kCorners + 3>> rows;
+  rows.reserve(raw.tets.size() * parts.size());
+  for (std::size_t t = 0; t < raw.tets.size(); ++t)
+    for (auto part : parts) {
+      std::ranges::sort(part, {}, [&](int k) { return raw.tets[t][static_cast<std::size_t>(k)]; });
+      std::array<VertexIndex, kCorners + 3>& row = rows.emplace_back();
+      row.fill(kNone);
+      for (std::size_t i = 0; i < kCorners; ++i) row[i] = raw.tets[t][static_cast<std::size_t>(part[i])];
+      for (std::size_t k = 0; k < inside; ++k) {
+        TetLattice::Weights w{};
+        for (const int c : part) w[static_cast<std::size_t>(c)] = 1;
+        if (kCorners == 2) w[static_cast<std::size_t>(part[1])] = static_cast<std::int8_t>(k + 1);
+        const std::size_t most = kCorners == 2 ? 0 : k;
+        w[static_cast<std::size_t>(part[most])] = 0;
+        w[static_cast<std::size_t>(part[most])] = static_cast<std::int8_t>(order - w[0] - w[1] - w[2] - w[3]);
+        row[kCorners + k] = raw.high_nodes[t * (lattice.size() - 4) + lattice.at(w) - 4];
+      }
+    }
+  std::ranges::sort(rows);
+  return rows;
+}
+
+template <std::size_t kCorners, class Parts>
+void check_nodes_of_parts(const RawMesh& raw, const Parts& parts, const Input& input) {
+  const auto rows = rows_of_parts<kCorners>(raw, parts);
+  const auto differ = std::ranges::adjacent_find(rows, [](const auto& a, const auto& b) {
+    return std::equal(a.begin(), a.begin() + kCorners, b.begin()) && a != b;
+  });
+  if (differ != rows.end())
+    input.fail(
+        fmt::format("two tetrahedra have other nodes on the {} between {} and {} (counted from 0), which they "
+                    "share; the file is damaged: export it again",
+                    kCorners == 2 ? "edge" : "face", (*differ)[0], (*differ)[1]));
+}
+
+/// Of one order all or none, and the same nodes where they meet.
+void check_high_nodes(RawMesh& raw, const Input& input) {
+  if (raw.high_order == 0) return;
+  const std::size_t each = nodes_of_tet(static_cast<int>(raw.high_order)) - 4;
+  if (raw.high_nodes.size() != raw.tets.size() * each || !raw.mid_nodes.empty()) {
+    raw.notes.emplace_back("tetrahedra of several orders are mixed: all are taken as linear");
+    raw.high_nodes.clear(), raw.mid_nodes.clear();
+    raw.high_order = 0;
+    return;
+  }
+  std::vector<bool> is_corner(raw.points.size(), false);
+  for (const Tet& t : raw.tets)
+    for (const VertexIndex v : t) is_corner[v] = true;
+  for (std::size_t i = 0; i < raw.high_nodes.size(); ++i)
+    if (is_corner[raw.high_nodes[i]])
+      input.fail(
+          fmt::format("the node {} (counted from 0) is a corner of one tetrahedron and a further node of "
+                      "tetrahedron {}; the file is damaged: export it again",
+                      raw.high_nodes[i], i / each));
+  check_nodes_of_parts<2>(raw, kTetEdges, input);
+  check_nodes_of_parts<3>(raw, kTetFaces, input);
+}
+
+/// Corners 2 and 3 change places.
+void turn_high_nodes(std::span<VertexIndex> nodes, int order) {
+  const TetLattice& lattice = tet_lattice(order);
+  const std::vector<VertexIndex> before(nodes.begin(), nodes.end());
+  for (std::size_t k = 0; k < nodes.size(); ++k) {
+    TetLattice::Weights w = lattice.weights(4 + k);
+    std::swap(w[2], w[3]);
+    nodes[lattice.at(w) - 4] = before[k];
+  }
+}
+
 /// Points that are gone are one behind all.
 std::vector<Triangle> clamped_triangles(const RawMesh& raw, std::size_t points) {
   std::vector<Triangle> all = raw.triangles;
@@ -184,6 +260,7 @@ class Ordering {
     divide_like_wide_cells(raw_);
     add_diagonals(raw_);
     check_mid_nodes(raw_, input_);
+    check_high_nodes(raw_, input_);
   }
 
   /// Corners first, then mid-side nodes; unused ones go.
@@ -194,6 +271,7 @@ class Ordering {
       for (const VertexIndex v : t) use[v] = 1;
     for (const auto& mids : raw_.mid_nodes)
       for (const VertexIndex v : mids) use[v] = 2;
+    for (const VertexIndex v : raw_.high_nodes) use[v] = 2;
     number_.assign(n, kNone);
     for (const char wanted : {1, 2})
       for (VertexIndex v = 0; v < n; ++v) {
@@ -203,6 +281,7 @@ class Ordering {
       }
     renumber(raw_.tets, number_);
     renumber(raw_.mid_nodes, number_);
+    for (VertexIndex& v : raw_.high_nodes) v = number_[v];
     // Triangles and edges at dropped points bound no tetrahedron; they go with what does not match.
     renumber(raw_.triangles, number_);
     renumber(raw_.edges, number_);
@@ -213,6 +292,8 @@ class Ordering {
   void take_tets() {
     mesh_.tets = std::move(raw_.tets);
     mesh_.mid_nodes = std::move(raw_.mid_nodes);
+    mesh_.high_nodes = std::move(raw_.high_nodes), mesh_.high_order = raw_.high_order;
+    const std::size_t each = mesh_.high_nodes_per_tet();
     is_turned_.assign(mesh_.tets.size(), false);
     const auto& p = mesh_.points;
     for (std::size_t t = 0; t < mesh_.tets.size(); ++t) {
@@ -220,6 +301,7 @@ class Ordering {
       if (orient3d(p[a], p[b], p[c], p[d]) >= 0) continue;
       is_turned_[t] = true;
       std::swap(c, d);
+      turn_high_nodes(std::span(mesh_.high_nodes).subspan(t * each, each), mesh_.order());
       if (mesh_.mid_nodes.empty()) continue;
       auto& m = mesh_.mid_nodes[t];
       std::swap(m[1], m[2]);
@@ -504,9 +586,11 @@ bool RawMesh::Field::offer(const Input& input, std::string_view name, std::uint6
   return is_wanted;
 }
 
-void RawMesh::Field::take(double value, const RawMesh& raw) {
-  at_tets.resize(raw.tets.size(), value);
-  at_triangles.resize(raw.triangles.size(), value);
+void RawMesh::Field::take(std::span<const double> values, const RawMesh& raw) {
+  const auto take_for = [&](std::size_t elements, std::vector<double>& taken) {
+    while (taken.size() < elements * values.size()) taken.insert(taken.end(), values.begin(), values.end());
+  };
+  take_for(raw.tets.size(), at_tets), take_for(raw.triangles.size(), at_triangles);
 }
 
 void RawMesh::add_tet(std::span<const VertexIndex> nodes, std::int64_t ref, const MidOrder& order) {
@@ -519,6 +603,14 @@ void RawMesh::add_tet(std::span<const VertexIndex> nodes, std::int64_t ref, cons
   mid_nodes.resize(tets.size() - 1, mids);
   for (std::size_t i = 0; has_mids && i < 6; ++i) mids[order[i]] = nodes[4 + i];
   mid_nodes.push_back(mids);
+}
+
+void RawMesh::add_high_tet(std::span<const VertexIndex> nodes, std::int64_t ref) {
+  add_tet(nodes.first(4), ref);
+  const std::uint32_t order = nodes.size() == nodes_of_tet(3) ? 3 : 4;
+  if (high_order != 0 && high_order != order) return;  // a file that mixes them has too few of either
+  high_order = order;
+  high_nodes.insert(high_nodes.end(), nodes.begin() + 4, nodes.end());
 }
 
 std::uint32_t RawMesh::add_face(std::span<const VertexIndex> nodes, std::int64_t ref) {

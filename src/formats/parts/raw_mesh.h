@@ -46,20 +46,25 @@ struct RawMesh {
     std::vector<std::string> names;  ///< of all that could be asked for, as the file lists them
     std::vector<double> at_points;   ///< one per point, or empty; of tensors `components` per point
     std::uint64_t components = 1;
-    /// One per element, or empty. Of triangles there may be fewer than there are beside tetrahedra.
+    /// One per element, or as many as Input::wants_element_tensors lets there be, or empty. Of triangles there may be
+    /// fewer than there are beside tetrahedra.
     std::vector<double> at_tets, at_triangles;
 
     /// Enters the name of one that is there; whether its values are asked for.
     bool offer(const Input& input, std::string_view name, std::uint64_t of_components = 1);
-    /// Enters the value of the tetrahedra and triangles that `raw` has more than values.
-    void take(double value, const RawMesh& raw);
+    /// Enters the value, or values, of the tetrahedra and triangles that `raw` has more than values.
+    void take(double value, const RawMesh& raw) { take({&value, 1}, raw); }
+    void take(std::span<const double> values, const RawMesh& raw);
   };
 
   std::string format;  ///< for messages, e.g. "Gmsh MSH 4.1"
   std::vector<Vec3> points;
   std::vector<Tet> tets;
   std::vector<std::array<VertexIndex, 6>> mid_nodes;  ///< one per tet, in the order of kTetEdges; empty: linear
-  std::vector<std::int64_t> tet_ref;                  ///< one per tet; empty: regions come from groups
+  /// Of order 3 or 4: as TetMesh::high_nodes. Fewer than all tets need: some have none.
+  std::vector<VertexIndex> high_nodes;
+  std::uint32_t high_order = 0;
+  std::vector<std::int64_t> tet_ref;  ///< one per tet; empty: regions come from groups
   std::vector<Triangle> triangles;
   std::vector<std::int64_t> triangle_ref;      ///< one per triangle; empty: patches come from groups
   std::vector<std::uint32_t> triangle_source;  ///< one per triangle, or empty
@@ -81,6 +86,8 @@ struct RawMesh {
   /// Adds a tetrahedron whose nodes are corners, then mid-side nodes in that order, if it has them. A file must not mix
   /// both kinds; ordered_mesh() refuses it.
   void add_tet(std::span<const VertexIndex> nodes, std::int64_t ref, const MidOrder& order = kVtkMids);
+  /// The same of order 3 or 4; `nodes` in the order of tet_lattice().
+  void add_high_tet(std::span<const VertexIndex> nodes, std::int64_t ref);
   /// Adds the two or three tetrahedra of a pyramid (5 or 13 nodes: its base, the apex) or wedge (6 or 15 nodes: a
   /// triangle and the one above it), in the order of kPlainWide. Their quadrilaterals are divided from the lowest node,
   /// so that neighbours match (J. Dompierre et al., How to subdivide pyramids, prisms and hexahedra into tetrahedra,

@@ -7,7 +7,8 @@ namespace {
 
 using SetKind = NamedSet::Kind;
 
-constexpr std::array<std::array<std::uint8_t, 6>, 2> kVtkCells{{{10, 14, 13, 5, 9, 3}, {24, 27, 26, 22, 23, 21}}};
+constexpr std::array<std::array<std::uint8_t, 6>, 3> kVtkCells{
+    {{10, 14, 13, 5, 9, 3}, {24, 27, 26, 22, 23, 21}, {71, 0, 0, 69, 0, 68}}};
 
 std::string_view plural(SetKind kind) {
   switch (kind) {
@@ -52,7 +53,7 @@ VtkCells::VtkCells(const MeshParts& mesh, const Shown& shown)
             mesh.nodes_per_face(),
             cells_.nodes_per_quad(),
             mesh.nodes_per_edge()},
-      types_(kVtkCells[mesh.second_order()]),
+      types_(kVtkCells[static_cast<std::size_t>(std::min(mesh.order(), 3) - 1)]),
       data_(data_of(mesh, shown)) {
   for (const MixedCells::Kind k : MixedCells::kAllKinds) ends_[k] = cells_.end(k);
   ends_[kTriangles] = first_face() + cells_.triangles();

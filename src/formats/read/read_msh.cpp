@@ -4,6 +4,7 @@
 // free. All in the order of their tags.
 
 #include "base/mesh/renumber.h"
+#include "formats/parts/mesh_parts.h"
 #include "formats/parts/msh_stream.h"
 #include "formats/parts/raw_mesh.h"
 #include "formats/parts/wide_orders.h"
@@ -83,10 +84,19 @@ int kept_dimension(std::int64_t type) {
 std::size_t kept_nodes(std::int64_t type) {
   if (type >= 26 && type <= 28) return 2;
   if (type >= 20 && type <= 25) return 3;
-  if (type >= 29 && type <= 31) return 4;
+  if (type == 31) return 4;
   if (type == 13) return 15;
   if (type == 14) return 13;
   return nodes_of_type(type);
+}
+/// Tetrahedra of order 3 and 4.
+bool is_kept_high(std::int64_t type) {
+  return type == 29 || type == 30;
+}
+std::span<const VertexIndex> in_lattice_order(std::span<const VertexIndex> nodes, CellRoom& room) {
+  const int order = nodes.size() == 20 ? 3 : 4;
+  for (std::size_t k = 0; k < nodes.size(); ++k) room[lattice_node_of_gmsh(order, k)] = nodes[k];
+  return std::span(room).first(nodes.size());
 }
 bool is_of_high_order(std::int64_t type) {
   return type >= 20 && type <= 31;
@@ -266,6 +276,17 @@ void permute(std::vector<T>& items, const std::vector<std::uint32_t>& place) {
   items = std::move(ordered);
 }
 
+/// The same of rows of equal length, of a list that has one for each place.
+void permute_rows(std::vector<VertexIndex>& items, const std::vector<std::uint32_t>& place) {
+  if (items.empty() || place.empty() || items.size() % place.size() != 0) return;
+  const std::size_t each = items.size() / place.size();
+  std::vector<VertexIndex> ordered(items.size());
+  for (std::size_t i = 0; i < place.size(); ++i)
+    std::copy_n(items.begin() + static_cast<std::ptrdiff_t>(i * each), each,
+                ordered.begin() + static_cast<std::ptrdiff_t>(place[i] * each));
+  items = std::move(ordered);
+}
+
 /// Of wide cells or faces, whose parts have one tag and stay together.
 template <class Wide>
 void sort_wide(std::vector<Wide>& wide, const std::vector<std::uint32_t>& place) {
@@ -290,6 +311,7 @@ void sort_by_tags(RawMesh& raw, const std::vector<std::uint64_t>& node_tags,
     for (auto& mids : raw.mid_nodes)
       for (VertexIndex& v : mids)
         if (v != kNone) v = place[0][v];
+    for (VertexIndex& v : raw.high_nodes) v = place[0][v];
     renumber_wide(raw, place[0]);
   }
   sort_wide(raw.wide_cells, place[3]);
@@ -300,6 +322,7 @@ void sort_by_tags(RawMesh& raw, const std::vector<std::uint64_t>& node_tags,
   permute(raw.triangle_ref, place[2]);
   permute(raw.tets, place[3]);
   permute(raw.mid_nodes, place[3]);
+  permute_rows(raw.high_nodes, place[3]);
   permute(raw.tet_ref, place[3]);
   if (!place[0].empty())
     for (RawMesh::Period& period : raw.periods)
@@ -473,7 +496,7 @@ class Msh {
     places_.finish(raw_);
     data_.finish(raw_, tags_.tags(), element_tags_);
     sort_by_tags(raw_, tags_.tags(), element_tags_);
-    if (high_order_ > 0)
+    if (high_order_ > 0 && raw_.high_order == 0)
       raw_.notes.push_back(fmt::format("{} elements of order 3 and more are taken as linear", high_order_));
     raw_.format = version_ == 4 ? "Gmsh MSH 4.1" : "Gmsh MSH 2.2";
     return std::move(raw_);
@@ -571,16 +594,19 @@ class Msh {
                    const Tag& next_tag) {
     std::array<VertexIndex, 128> nodes;
     std::array<VertexIndex, 15> ours;
+    CellRoom high;
     const std::size_t count = nodes_of_type(type);
     for (std::size_t i = 0; i < count; ++i) nodes[i] = node(next_tag());
     const std::span<const VertexIndex> all = std::span(nodes).first(kept_nodes(type));
-    high_order_ += is_of_high_order(type);
+    high_order_ += is_of_high_order(type) && !is_kept_high(type);
     const int dimension = kept_dimension(type);
     const auto d = static_cast<std::size_t>(dimension);
     std::uint32_t index = nodes[0], parts = 1;
     if (dimension == 3) {
       index = static_cast<std::uint32_t>(raw_.tets.size());
-      if (all.size() == 4 || all.size() == 10)
+      if (is_kept_high(type))
+        raw_.add_high_tet(in_lattice_order(all, high), ref);
+      else if (all.size() == 4 || all.size() == 10)
         raw_.add_tet(all, ref, kGmshMids);
       else if (type == 5 || type == 12 || type == 17)
         parts = raw_.add_hexahedron(all, ref, tags_.tags());
@@ -613,10 +639,14 @@ class Msh {
       raw_.tets[kept] = raw_.tets[t], raw_.tet_ref[kept] = raw_.tet_ref[t];
       element_tags_[3][kept] = element_tags_[3][t];
       if (!raw_.mid_nodes.empty()) raw_.mid_nodes[kept] = raw_.mid_nodes[t];
+      const std::size_t each = raw_.high_order > 0 ? raw_.high_nodes.size() / first.size() : 0;
+      std::copy_n(raw_.high_nodes.begin() + static_cast<std::ptrdiff_t>(t * each), each,
+                  raw_.high_nodes.begin() + static_cast<std::ptrdiff_t>(kept * each));
       ++kept;
     }
     raw_.tets.resize(kept), raw_.tet_ref.resize(kept), element_tags_[3].resize(kept);
     if (!raw_.mid_nodes.empty()) raw_.mid_nodes.resize(kept);
+    raw_.high_nodes.resize(raw_.high_nodes.size() / first.size() * kept);
     std::erase_if(raw_.wide_cells, [&](const WideCell& cell) { return now[cell.first] == kNone; });
     for (WideCell& cell : raw_.wide_cells) cell.first = now[cell.first];
   }

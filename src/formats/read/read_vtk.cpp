@@ -249,7 +249,8 @@ class Vtk {
   }
 
   void take_array(const std::string& name, std::uint64_t n, std::uint64_t components, const Type& of) {
-    const bool is_asked = components == 1 ? of_ != Of::kField : of_ == Of::kPoints;
+    const bool is_asked =
+        components == 1 || (of_ == Of::kCells && input_.wants_element_tensors) ? of_ != Of::kField : of_ == Of::kPoints;
     if (is_asked && !is_numbering(name) && raw_.field.offer(input_, name, components)) return take_field(n, of);
     const bool is_wanted = is_set_name(name) || name == "region" || name == "patch" || name == "curve" ||
                            name == "source" || name == "layers" || of_ == Of::kField || of_ == Of::kCells;
@@ -267,6 +268,7 @@ class Vtk {
   void take_field(std::uint64_t n, const Type& of) {
     std::vector<double> all;
     values(n, of, [&](double v) { all.push_back(v); });
+    if (of_ != Of::kPoints) cell_field_components_ = raw_.field.components;
     (of_ == Of::kPoints ? raw_.field.at_points : cell_field_) = std::move(all);
   }
 
@@ -294,7 +296,8 @@ class Vtk {
     }
     if (data.region.empty() && data.patch.empty())
       data.region = data.patch = material_of(std::move(others), raw_.notes);
-    if (cell_field_.size() == types_.size()) data.field = std::move(cell_field_);
+    data.field_components = cell_field_components_;
+    if (cell_field_.size() == types_.size() * data.field_components) data.field = std::move(cell_field_);
     VtkCellTaker taker(input_, raw_, data);
     std::int64_t begin = 0;
     for (std::uint64_t c = 0; c < types_.size(); ++c) {
@@ -317,6 +320,7 @@ class Vtk {
   std::uint64_t data_count_ = 0;
   std::vector<std::pair<std::string, std::vector<std::int64_t>>> cell_arrays_;
   std::vector<double> cell_field_;
+  std::uint64_t cell_field_components_ = 1;
 };
 
 }  // namespace

@@ -121,6 +121,7 @@ class Vtu {
       if (array.section == "CellData" && is_set_name(array.name))
         if (auto values = cell_integers(array.name, 0)) data.sets.emplace_back(array.name, *std::move(values));
     data.field = field_of("CellData", xml_.cells);
+    data.field_components = raw_.field.components;
     raw_.field.at_points = field_of("PointData", xml_.points);
     VtkCellTaker taker(input_, raw_, data);
     std::int64_t begin = 0;
@@ -144,7 +145,7 @@ class Vtu {
     std::vector<double> values;
     for (const VtkArray& array : xml_.arrays) {
       if (array.section != section || is_numbering(array.name) || !array.type.starts_with("Float")) continue;
-      if (array.components != 1 && section != "PointData") continue;
+      if (array.components != 1 && section != "PointData" && !input_.wants_element_tensors) continue;
       const auto components = static_cast<std::uint64_t>(array.components);
       if (!raw_.field.offer(input_, array.name, components)) continue;
       values = vtk_reals(xml_, array, input_, components * count);

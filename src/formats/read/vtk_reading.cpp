@@ -1,6 +1,7 @@
 #include "formats/read/vtk_reading.h"
 
 #include "formats/containers/scanner.h"
+#include "formats/parts/mesh_parts.h"
 
 #include <algorithm>
 #include <array>
@@ -121,17 +122,25 @@ void VtkCellTaker::take(std::uint64_t cell, std::int64_t type, std::span<const s
     kHexahedron20 = 25,
     kWedge15 = 26,
     kPyramid13 = 27,
-    kHexahedron27 = 29
+    kHexahedron27 = 29,
+    kLagrangeTetra = 71
   };
   const std::size_t count = nodes.size();
-  std::array<VertexIndex, 27> all;
+  std::array<VertexIndex, 35> all;
   std::array<VertexIndex, 15> ours;
   const auto take_nodes = [&] {
     for (std::size_t k = 0; k < count; ++k) all[k] = node(cell, nodes[k]);
   };
   Kind kind;
   std::size_t member = 0, end = 0;
-  if ((type == kTetra && count == 4) || (type == kTetra10 && count == 10)) {
+  if (type == kLagrangeTetra && (count == 20 || count == 35)) {
+    take_nodes();
+    CellRoom high;
+    for (std::size_t k = 0; k < count; ++k) high[lattice_node_of_vtk(count == 20 ? 3 : 4, k)] = all[k];
+    kind = Kind::kElements;
+    member = raw_.tets.size();
+    raw_.add_high_tet(std::span(high).first(count), at_or(data_.region, cell, 1));
+  } else if ((type == kTetra && count == 4) || (type == kTetra10 && count == 10)) {
     take_nodes();
     kind = Kind::kElements;
     member = raw_.tets.size();
@@ -180,7 +189,8 @@ void VtkCellTaker::take(std::uint64_t cell, std::int64_t type, std::span<const s
     ++raw_.other_elements;
     return;
   }
-  if (!data_.field.empty()) raw_.field.take(data_.field[cell], raw_);
+  const std::size_t each = data_.field_components;
+  if (!data_.field.empty()) raw_.field.take(std::span(data_.field).subspan(cell * each, each), raw_);
   for (std::size_t s = 0; s < groups_.size(); ++s)
     if (groups_[s].kind == kind && data_.sets[s].second[cell] != 0)
       for (std::size_t m = member; m < std::max(member + 1, end); ++m)

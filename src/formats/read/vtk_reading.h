@@ -18,6 +18,7 @@ struct VtkCellData {
   std::vector<std::int64_t> region, patch, curve, source, layers;
   std::vector<std::pair<std::string, std::vector<std::int64_t>>> sets;  ///< not 0: a member
   std::vector<double> field = {};                                       ///< that Input::field asks for
+  std::uint64_t field_components = 1;                                   ///< of it for each cell
 };
 
 /// Whether an array is a set as vtk_cells.h has them: "nodes NAME", "faces NAME".

@@ -134,7 +134,7 @@ class AbaqusJob {
 
   void write_step(bool of_bolts) {
     const bool slides = plan_.slides();
-    text_ << (slides ? "*STEP, INC=200\n*STATIC\n.25, 1., 1E-5, 1.\n" : "*STEP\n*STATIC\n");
+    text_ << (slides ? "*STEP, INC=200\n*STATIC\n1., 1., 1E-5, 1.\n" : "*STEP\n*STATIC\n");
     if (of_bolts)
       write_tightening();
     else

@@ -119,7 +119,7 @@ class AnsysJob {
   }
   /// Triangles of contact elements are quadrilaterals whose third and fourth corners are one; targets have a shape.
   void write_side(std::size_t part, bool of_contact) {
-    std::array<VertexIndex, 8> room;
+    FaceRoom room;
     std::size_t shape = 0;
     for (const std::uint32_t f : cells_.members(mesh_.parts()[part])) {
       const auto n = cells_.face_nodes(f, room);

@@ -140,7 +140,7 @@ std::uint32_t InterfacePatches::of(std::span<const VertexIndex> corners) const {
 
 std::vector<FoamFace> faces_between(const MixedCells& cells, std::span<const std::uint64_t> number) {
   std::vector<CellSide> sides;
-  std::array<VertexIndex, 15> room;
+  CellRoom room;
   for (std::uint32_t c = 0; c < cells.cells(); ++c) {
     const auto nodes = cells.nodes(c, room);
     const std::uint64_t of_number = number.empty() ? c : number[c];

@@ -14,9 +14,10 @@ using Kind = NamedSet::Kind;
 
 std::int32_t gmsh_type_of(std::size_t dimension, std::size_t nodes) {
   using Types = std::map<std::size_t, std::int32_t>;
-  static const std::array<Types, 4> kTypes{Types{{1, 15}}, Types{{2, 1}, {3, 8}},
-                                           Types{{3, 2}, {4, 3}, {6, 9}, {8, 16}},
-                                           Types{{4, 4}, {5, 7}, {6, 6}, {10, 11}, {13, 19}, {15, 18}}};
+  static const std::array<Types, 4> kTypes{
+      Types{{1, 15}}, Types{{2, 1}, {3, 8}, {4, 26}, {5, 27}},
+      Types{{3, 2}, {4, 3}, {6, 9}, {8, 16}, {10, 21}, {15, 23}},
+      Types{{4, 4}, {5, 7}, {6, 6}, {10, 11}, {13, 19}, {15, 18}, {20, 29}, {35, 30}}};
   return kTypes[dimension].at(nodes);
 }
 
@@ -92,7 +93,7 @@ PeriodicLinks::PeriodicLinks(const MeshParts& mesh, FunctionRef<std::int32_t(std
   std::map<Triangle, std::int32_t> entity_at;
   for (std::size_t f = 0; f < mesh_.boundary.size(); ++f) entity_at[face_key(mesh_.boundary[f])] = entity_of(f);
   for (std::uint32_t period = 0; period < originals.size(); ++period) {
-    std::array<VertexIndex, 6> room;
+    FaceRoom room;
     for (std::size_t f = 0; f < mesh_.boundary.size(); ++f) {
       Triangle original{};
       if (!copied(period, mesh_.boundary[f], originals[period], original)) continue;

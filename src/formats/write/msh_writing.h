@@ -39,15 +39,18 @@ class ElementNodes {
     if (dimension == 2) return all(cells_.face_nodes(element, face_));
     const auto nodes = cells_.nodes(element, tet_, kGmshWide);
     if (nodes.size() == 10) std::swap(tet_[8], tet_[9]);  // 34 before 24
-    all(nodes);
+    if (mesh_.order() < 3) return all(nodes);
+    CellRoom in_order;
+    for (std::size_t k = 0; k < nodes.size(); ++k) in_order[k] = nodes[vtk_node_of_gmsh(mesh_.order(), k)];
+    all(std::span(in_order).first(nodes.size()));
   }
 
  private:
   const MeshParts& mesh_;
   const MixedCells& cells_;
-  std::array<VertexIndex, 15> tet_;
-  std::array<VertexIndex, 8> face_;
-  std::array<VertexIndex, 3> edge_;
+  CellRoom tet_;
+  FaceRoom face_;
+  EdgeRoom edge_;
 };
 
 /// The numbers of a file in either encoding; a text has a line for each record.

@@ -105,7 +105,7 @@ class AbaqusWriter {
     if (curve == parts.end()) throw OptionError(fmt::format("no curve \"{}\" could be beams", name));
     text_.line("*ELEMENT, TYPE={}, ELSET={}", mesh_.second_order() ? "B32" : "B31", further_.legal(name + "_beams"));
     for (const std::uint32_t e : curve->members) {
-      std::array<VertexIndex, 3> room;
+      EdgeRoom room;
       const auto nodes = mesh_.edge_nodes(e, room);
       text_ << ++number_ << ", " << nodes[0] + 1;
       if (nodes.size() == 3) text_ << ", " << nodes[2] + 1;
@@ -196,7 +196,8 @@ class AbaqusWriter {
   }
 
   void write_element(std::uint32_t cell, bool second) {
-    std::array<VertexIndex, 15> room, wedge;
+    CellRoom room;
+    std::array<VertexIndex, 15> wedge;
     auto nodes = cells_.nodes(cell, room);
     if (second && cells_.kind(cell) == MixedCells::kPyramid) nodes = as_wedge(nodes, wedge);
     text_ << cell + 1;

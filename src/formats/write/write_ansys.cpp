@@ -62,7 +62,7 @@ class AnsysWriter {
   }
 
   std::vector<VertexIndex> nodes_of(std::size_t c) const {
-    std::array<VertexIndex, 15> room;
+    CellRoom room;
     const auto own = cells_.nodes(c, room);
     if (cells_.kind(c) == MixedCells::kTet) return {own.begin(), own.end()};
     const auto& brick = cells_.kind(c) == MixedCells::kWedge ? kWedgeBrick : kPyramidBrick;

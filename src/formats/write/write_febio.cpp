@@ -78,7 +78,7 @@ class FebioWriter {
     if (cells.empty()) return;
     text_.line("    <Elements type=\"{}{}\" name=\"{}\">", kTypes[kind], cells_.nodes_per(kind),
                domain_name(name, kind));
-    std::array<VertexIndex, 15> room;
+    CellRoom room;
     for (const std::uint32_t c : cells) nodes("elem", c + 1, cells_.nodes(c, room));
     text_ << "    </Elements>\n";
   }
@@ -90,7 +90,7 @@ class FebioWriter {
       for (const MixedCells::Kind kind : MixedCells::kAllKinds) write_domain(part, name, kind);
     } else if (part.kind == Kind::kFaces) {
       text_.line("    <Surface name=\"{}\">", name);
-      std::array<VertexIndex, 8> room;
+      FaceRoom room;
       for (const std::uint32_t f : cells_.members(part)) {
         const auto all = cells_.face_nodes(f, room);
         nodes(fmt::format("{}{}", f < cells_.triangles() ? "tri" : "quad", all.size()), ++id, all);
@@ -98,7 +98,7 @@ class FebioWriter {
       text_ << "    </Surface>\n";
     } else if (part.kind == Kind::kEdges) {
       text_.line("    <Edge name=\"{}\">", name);
-      std::array<VertexIndex, 3> room;
+      EdgeRoom room;
       for (const std::uint32_t e : part.members) nodes(second ? "line3" : "line2", ++id, mesh_.edge_nodes(e, room));
       text_ << "    </Edge>\n";
     } else {

@@ -47,7 +47,7 @@ class LsDynaWriter {
     // What has four, five or six nodes is a degenerate brick; a wedge stands on a quadrilateral.
     constexpr std::array<std::array<std::uint8_t, 10>, MixedCells::kKinds> kBrick{
         {{0, 1, 2, 3, 3, 3, 3, 3, 3, 3}, {0, 1, 2, 3, 4, 4, 4, 4, 4, 4}, {1, 0, 3, 4, 2, 2, 5, 5, 5, 5}}};
-    std::array<VertexIndex, 15> room;
+    CellRoom room;
     const auto nodes = cells_.nodes(c, room);
     const std::uint32_t region = mesh_.region_of(cells_.first_tet(c));
     text_.field(8, std::uint64_t{c} + 1).field(8, std::uint64_t{mesh_.tag_of_region(region)}) << '\n';

@@ -342,7 +342,7 @@ class MshPiece {
       }
     std::sort(others.begin(), others.end());
     others.erase(std::unique(others.begin(), others.end()), others.end());
-    std::array<VertexIndex, 15> room;
+    CellRoom room;
     std::vector<std::uint32_t> parts;
     for (std::uint32_t c = 0; c < cells_.cells(); ++c) {
       if (!is_own(3, cells_.first_tet(c))) continue;

@@ -59,7 +59,7 @@ class NastranWriter {
 
   void write_faces() {
     constexpr std::array<std::array<const char*, 2>, 2> kCards{{{"CTRIA3  ", "CTRIA6  "}, {"CQUAD4  ", "CQUAD8  "}}};
-    std::array<VertexIndex, 8> room;
+    FaceRoom room;
     for (std::size_t f = 0; f < cells_.faces(); ++f)
       element(kCards[f >= cells_.triangles()][mesh_.second_order()], cells_.cells() + f + 1,
               first_shell_ + std::uint64_t{mesh_.patch_of(cells_.first_face(f))}, cells_.face_nodes(f, room));
@@ -67,7 +67,7 @@ class NastranWriter {
 
   void write_solids() {
     constexpr std::array<const char*, MixedCells::kKinds> kCards{"CTETRA  ", "CPYRAM  ", "CPENTA  "};
-    std::array<VertexIndex, 15> room;
+    CellRoom room;
     for (std::size_t c = 0; c < cells_.cells(); ++c)
       element(kCards[cells_.kind(c)], c + 1, std::uint64_t{mesh_.tag_of_region(mesh_.region_of(cells_.first_tet(c)))},
               cells_.nodes(c, room, kCgnsWide));

@@ -66,7 +66,7 @@ class WholeFaces {
       for (const auto& [other, own] : faces)
         if (other != kNone && other / 4 > t) visit(of_tet(own, other / 4));
     }
-    std::array<VertexIndex, 8> room;
+    FaceRoom room;
     for (const Part& patch : mesh_.parts(Part::Origin::kPatch))
       for (const std::uint32_t f : outside(patch)) {
         const Side& side = mesh_.sides()[cells_.first_face(f)];
@@ -76,8 +76,7 @@ class WholeFaces {
   }
 
   /// A face of the boundary of some mesh.
-  static FoamFace face_of_boundary(const MixedCells& cells, std::uint32_t f, std::uint32_t owner,
-                                   std::array<VertexIndex, 8>& room) {
+  static FoamFace face_of_boundary(const MixedCells& cells, std::uint32_t f, std::uint32_t owner, FaceRoom& room) {
     const auto nodes = cells.face_nodes(f, room);
     return {{nodes[0], nodes[1], nodes[2], nodes[f < cells.triangles() ? 2 : 3]}, owner, kNone};
   }
@@ -283,7 +282,7 @@ class FoamMesh {
       if (first < mesh_.mesh().boundary.size() && mesh_.sides()[first].tet < piece_->own_tets)
         faces_of[mesh_.patch_of(first)].push_back(f);
     }
-    std::array<VertexIndex, 8> room;
+    FaceRoom room;
     for (const auto& [patch, size] : whole_.patches) {
       patches_.push_back({patch, faces_of[patch->number].size()});
       for (const std::uint32_t f : faces_of[patch->number]) {

@@ -15,7 +15,7 @@ void write_su2(MeshOutput& output, const MeshParts& mesh) {
   const std::vector<std::string> names = legal_names(output, mesh, {}, std::array{Part::Origin::kPatch});
   const MixedCells cells(mesh);
   constexpr std::array<const char*, MixedCells::kKinds> kTypes{"10", "14", "13"};
-  std::array<VertexIndex, 15> room;
+  CellRoom room;
   out.line("% Mesh by octafront\nNDIME= 3\nNELEM= {}", cells.cells());
   for (std::size_t c = 0; c < cells.cells(); ++c) {
     out << kTypes[cells.kind(c)];
@@ -36,7 +36,7 @@ void write_su2(MeshOutput& output, const MeshParts& mesh) {
     return part.origin == Part::Origin::kPatch && !outside(part).empty();
   };
   out.line("NMARK= {}", std::count_if(mesh.parts().begin(), mesh.parts().end(), is_marker));
-  std::array<VertexIndex, 8> face_room;
+  FaceRoom face_room;
   for (std::size_t p = 0; p < names.size(); ++p) {
     const Part& part = mesh.parts()[p];
     if (!is_marker(part)) continue;

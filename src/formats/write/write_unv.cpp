@@ -146,9 +146,9 @@ class UnvWriter {
   const MeshParts& mesh_;
   MixedCells cells_;
   std::vector<std::string> names_;
-  std::array<VertexIndex, 15> solid_;
-  std::array<VertexIndex, 8> face_;
-  std::array<VertexIndex, 3> edge_;
+  CellRoom solid_;
+  FaceRoom face_;
+  EdgeRoom edge_;
 };
 
 }  // namespace

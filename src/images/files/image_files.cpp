@@ -1,4 +1,5 @@
 #include <octafront/error.h>
+#include <octafront/limits.h>
 
 #include "formats/containers/file_head.h"
 #include "formats/containers/named_file.h"
@@ -72,6 +73,7 @@ fs::path raw_header_of(const fs::path& file) {
 }
 
 std::string first_bytes(const fs::path& file) {
+  require_in_folders(file.string());
   std::ifstream stream(file, std::ios::binary);
   std::string bytes(kHead, '\0');
   stream.read(bytes.data(), static_cast<std::streamsize>(bytes.size()));

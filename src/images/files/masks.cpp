@@ -1,6 +1,7 @@
 #include "images/files/masks.h"
 
 #include <octafront/error.h>
+#include <octafront/limits.h>
 
 #include "base/core/wording.h"
 #include "images/files/voxels.h"
@@ -116,6 +117,7 @@ Image image_of_masks(const std::vector<std::string>& files, const std::function<
 }
 
 std::vector<std::string> images_in(const std::string& folder, const std::function<bool(const std::string&)>& is_one) {
+  require_in_folders(folder);
   std::vector<std::string> files;
   std::error_code error;
   for (fs::directory_iterator it(folder, error), end; !error && it != end; it.increment(error)) {

@@ -3,6 +3,8 @@
 #include "base/core/parallel.h"
 #include "base/geometry/measures.h"
 #include "base/mesh/edge_table.h"
+#include "base/mesh/face_table.h"
+#include "improve/curved/node_places.h"
 
 #include <algorithm>
 #include <cstdint>
@@ -32,8 +34,8 @@ struct Target {
 
 class Search {
  public:
-  Search(const TetMesh& mesh, const std::vector<Edge>& sharp, SmoothSurface& surface)
-      : mesh_(mesh), surface_(surface), faces_(mesh.boundary) {
+  Search(const TetMesh& mesh, const std::vector<Edge>& sharp, SmoothSurface& surface, int order)
+      : mesh_(mesh), surface_(surface), order_(order), faces_(mesh.boundary) {
     faces_.insert(faces_.end(), mesh.interfaces.begin(), mesh.interfaces.end());
     table_ = make_edge_table(mesh.points.size(), faces_);
     tolerance_ = kBendOnCurve * bounding_box(mesh.points).diagonal();
@@ -51,6 +53,10 @@ class Search {
   Vec3 point(VertexIndex v) const { return mesh_.points[v]; }
   double edge_length(std::size_t e) const { return distance(point(table_.edges[e][0]), point(table_.edges[e][1])); }
   Vec3 middle(std::size_t e) const { return 0.5 * (point(table_.edges[e][0]) + point(table_.edges[e][1])); }
+  double longest_edge(const Triangle& t) const {
+    return std::max(
+        {distance(point(t[0]), point(t[1])), distance(point(t[1]), point(t[2])), distance(point(t[2]), point(t[0]))});
+  }
   Vec3 face_normal(std::size_t f) const {
     const auto& [a, b, c] = faces_[f];
     return double_area_normal(point(a), point(b), point(c));
@@ -93,16 +99,29 @@ class Search {
     const Target found = target(vertex_on_curve_[v], point(v), normal_[v], kMostMove * shortest_[v]);
     return found.on == On::kCurve && surface_.is_corner(found.foot, tolerance_) ? Target{On::kCorner, {}} : found;
   }
-  Target target_of_edge(std::size_t e) const {
+  Target target_in_edge(std::size_t e, std::size_t node) const {
     Vec3 normal;
     for (const std::uint32_t h : table_.uses(e)) normal += normalized(face_normal(h / 3));
-    return target(on_curve_[e], middle(e), normal, kMostBend * edge_length(e));
+    return target(on_curve_[e], in_edge(order_, node).mean(mesh_.points, table_.edges[e]), normal,
+                  kMostBend * edge_length(e));
   }
+  Target target_in_face(std::size_t f, std::size_t node) const {
+    const Triangle corners = face_key(faces_[f]);
+    return target(false, in_face(order_, node).mean(mesh_.points, corners), face_normal(f),
+                  kMostBend * longest_edge(corners));
+  }
+  std::size_t first_of_edge(std::size_t e) const { return vertices_.size() + e * nodes_in_edge(order_); }
+  std::size_t first_of_face(std::size_t f) const { return first_of_edge(table_.size()) + f * nodes_in_face(order_); }
 
   void locate() {
-    targets_.resize(vertices_.size() + table_.size());
+    targets_.resize(first_of_face(faces_.size()));
     parallel_for(vertices_.size(), [&](std::size_t i) { targets_[i] = target_of_vertex(vertices_[i]); });
-    parallel_for(table_.size(), [&](std::size_t e) { targets_[vertices_.size() + e] = target_of_edge(e); });
+    parallel_for(table_.size(), [&](std::size_t e) {
+      for (std::size_t k = 0; k < nodes_in_edge(order_); ++k) targets_[first_of_edge(e) + k] = target_in_edge(e, k);
+    });
+    parallel_for(faces_.size(), [&](std::size_t f) {
+      for (std::size_t k = 0; k < nodes_in_face(order_); ++k) targets_[first_of_face(f) + k] = target_in_face(f, k);
+    });
   }
 
   void prepare() {
@@ -131,21 +150,48 @@ class Search {
       moved[v] = displacement(targets_[i], point(v), kMostMove * shortest_[v]);
       if (moved[v] && length(*moved[v]) > kStraightBend * shortest_[v]) bends.corners.push_back({v, *moved[v]});
     }
-    // An edge that bends to the surface with an end that stays away from it would be a bump.
     for (std::size_t e = 0; e < table_.size(); ++e) {
-      const auto& [a, b] = table_.edges[e];
-      if (!moved[a] || !moved[b]) continue;
-      const auto by = displacement(targets_[vertices_.size() + e], middle(e), kMostMove * edge_length(e));
-      if (!by) continue;
-      const Vec3 bend = *by - 0.5 * (*moved[a] + *moved[b]);
-      const double part = length(bend) / edge_length(e);
-      if (part > kStraightBend && part <= kMostBend) bends.edges.push_back({table_.edges[e], bend});
+      NodeMoves by{};
+      const double most = most_bend(
+          table_.edges[e], edge_length(e), first_of_edge(e), nodes_in_edge(order_),
+          [&](std::size_t k) { return in_edge(order_, k); }, moved, by);
+      if (most > kStraightBend && most <= kMostBend) bends.edges.push_back({table_.edges[e], by});
     }
+    for (std::size_t f = 0; f < faces_.size() && nodes_in_face(order_) > 0; ++f) {
+      const Triangle corners = face_key(faces_[f]);
+      NodeMoves by{};
+      const double most = most_bend(
+          corners, longest_edge(corners), first_of_face(f), nodes_in_face(order_),
+          [&](std::size_t k) { return in_face(order_, k); }, moved, by);
+      if (most >= 0 && most <= kMostBend) bends.faces.push_back({corners, by});
+    }
+    std::ranges::sort(bends.faces, {}, &FaceBend::face);
     return bends;
+  }
+  /// How far the nodes between these corners are to go, and the most of it in parts of `size`; negative if a place is
+  /// not known: what bends to the surface with a corner that stays away from it would be a bump.
+  template <class Corners, class InPart>
+  double most_bend(const Corners& corners, double size, std::size_t first, std::size_t nodes, const InPart& in_part,
+                   const std::vector<std::optional<Vec3>>& moved, NodeMoves& by) const {
+    std::vector<Vec3> moves;
+    for (const VertexIndex v : corners) {
+      if (!moved[v]) return -1;
+      moves.push_back(*moved[v]);
+    }
+    double most = 0;
+    for (std::size_t k = 0; k < nodes; ++k) {
+      const auto at = in_part(k);
+      const auto to = displacement(targets_[first + k], at.mean(mesh_.points, corners), kMostMove * size);
+      if (!to) return -1;
+      by[k] = *to - at.mean_of(moves);
+      most = std::max(most, length(by[k]) / size);
+    }
+    return most;
   }
 
   const TetMesh& mesh_;
   SmoothSurface& surface_;
+  int order_;
   std::vector<Triangle> faces_;  // the boundary, and interfaces
   EdgeTable table_;              // their edges
   double tolerance_ = 0;
@@ -159,8 +205,8 @@ class Search {
 
 }  // namespace
 
-Bends find_bends(const TetMesh& mesh, const std::vector<Edge>& sharp, SmoothSurface& surface) {
-  return Search(mesh, sharp, surface).run();
+Bends find_bends(const TetMesh& mesh, const std::vector<Edge>& sharp, SmoothSurface& surface, int order) {
+  return Search(mesh, sharp, surface, order).run();
 }
 
 void add_corners_above(std::span<const VertexIndex> below, Bends& bends) {

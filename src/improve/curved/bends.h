@@ -19,25 +19,36 @@ struct CornerMove {
   Vec3 by;
 };
 
-/// An edge of the boundary that would be curved: its mid-side node lies off the middle between its ends, when those are
-/// where they want to be. The edge keeps this shape where they are not.
+/// How far the nodes inside an edge (from its lower end on) or face (the one nearest to its lowest corner first) lie
+/// off the straight one between its corners, when those are where they want to be. It keeps this shape where they are
+/// not.
+using NodeMoves = std::array<Vec3, 3>;
+
+/// An edge of the boundary that would be curved.
 struct EdgeBend {
   Edge edge;
-  Vec3 by;
+  NodeMoves by;
+};
+
+/// A face of the boundary, its corners ascending, whose inner nodes have places.
+struct FaceBend {
+  Triangle face;
+  NodeMoves by;
 };
 
 struct Bends {
   std::vector<CornerMove> corners;  ///< ascending
   std::vector<EdgeBend> edges;      ///< ascending
+  std::vector<FaceBend> faces;      ///< ascending; of orders 3 and 4
   std::size_t too_far = 0;          ///< corners that stay, for they would have to move too far
 };
 
 /// `mesh` is linear. `sharp`: feature edges of its boundary, sorted, those between patches too. In parallel.
-Bends find_bends(const TetMesh& mesh, const std::vector<Edge>& sharp, SmoothSurface& surface);
+Bends find_bends(const TetMesh& mesh, const std::vector<Edge>& sharp, SmoothSurface& surface, int order = 2);
 
 /// The same where the true geometry is known; the patches of the mesh are its patches. Edges bend as they do once their
 /// corners are on it. In parallel.
-Bends find_bends(const TetMesh& mesh, const TrueGeometry& geometry);
+Bends find_bends(const TetMesh& mesh, const TrueGeometry& geometry, int order = 2);
 
 /// What lies over vertices of the boundary goes along with them, nodes of columns over a wall: `below` has for each
 /// vertex the one of the boundary under it, itself if there is none.

@@ -17,20 +17,20 @@ namespace octafront {
 // `below`: per vertex the boundary vertex at the foot of its column of boundary layers, or itself. A column moves along
 // with its foot. Empty: there are no layers.
 
-/// As make_second_order(), with what the pipeline knows already. `sharp`: feature edges of the boundary of the mesh,
+/// As make_curved(), with what the pipeline knows already. `sharp`: feature edges of the boundary of the mesh,
 /// sorted, those between patches too. `fixed`: frozen corners, ascending.
 SecondOrderSummary curve_to_surface(TetMesh& mesh, const std::vector<Edge>& sharp, const KnownSurface& surface,
                                     double feature_angle, std::span<const VertexIndex> below,
-                                    std::span<const VertexIndex> fixed, const RunContext& context);
+                                    std::span<const VertexIndex> fixed, int order, const RunContext& context);
 
 /// Moves the corners on the boundary and on interfaces of a linear mesh to the true geometry, as far as elements keep
 /// half of their volume; what did not go the whole way tries again, for a few rounds. Counts `moved` and `held`.
 SecondOrderSummary move_to_geometry(TetMesh& mesh, const TrueGeometry& geometry, std::span<const VertexIndex> below,
                                     const RunContext& context);
 
-/// Gives a linear mesh whose corners are on the true geometry mid-side nodes on it.
+/// Gives a linear mesh whose corners are on the true geometry the nodes of this order, on it.
 SecondOrderSummary curve_to_geometry(TetMesh& mesh, const TrueGeometry& geometry, std::span<const VertexIndex> below,
-                                     const RunContext& context);
+                                     int order, const RunContext& context);
 
 /// Volume of a second-order mesh, curved as it is. Unit: input unit cubed.
 double curved_volume(const TetMesh& mesh);
@@ -42,6 +42,6 @@ std::vector<double> curved_volumes(const TetMesh& mesh);
 std::vector<double> volumes_cut_off(const TetMesh& mesh, const TrueGeometry& geometry);
 
 /// With straight edges.
-SecondOrderSummary add_straight_edges(TetMesh& mesh, const RunContext& context);
+SecondOrderSummary add_straight_edges(TetMesh& mesh, int order, const RunContext& context);
 
 }  // namespace octafront

@@ -166,7 +166,7 @@ void bend_edges(TetMesh& mesh, const TetEdges& edges, std::span<const EdgeBend> 
   std::vector<std::pair<VertexIndex, Way>> ways;
   for (const auto& [edge, by] : bends) {
     const VertexIndex v = first + edges.find(edge[0], edge[1]);
-    ways.push_back({v, {mesh.points[v], by}});
+    ways.push_back({v, {mesh.points[v], by[0]}});
   }
   Easing<6> easing(mesh, mesh.mid_nodes, std::move(ways));
   easing.settle(

@@ -24,7 +24,7 @@ std::uint32_t TetEdges::find(VertexIndex a, VertexIndex b) const {
   return at != end && *at == b ? static_cast<std::uint32_t>(at - high.begin()) : kNone;
 }
 
-TetEdges add_straight_mid_nodes(TetMesh& mesh) {
+TetEdges edges_of(const TetMesh& mesh, std::vector<std::array<std::uint32_t, 6>>& of_tet) {
   const std::size_t corners = mesh.points.size();
   Groups<Use> uses(corners, [&](const auto& add) {
     for (std::uint32_t t = 0; t < mesh.tets.size(); ++t)
@@ -44,11 +44,9 @@ TetEdges add_straight_mid_nodes(TetMesh& mesh) {
     edges.first[v + 1] = count;
   });
   for (std::size_t v = 0; v < corners; ++v) edges.first[v + 1] += edges.first[v];
-
   edges.high.resize(edges.first[corners]);
   edges.low.resize(edges.high.size());
-  mesh.points.resize(corners + edges.size());
-  mesh.mid_nodes.resize(mesh.tets.size());
+  of_tet.resize(mesh.tets.size());
   parallel_for(corners, [&](std::size_t v) {
     const auto here = uses[v];
     std::uint32_t e = edges.first[v] - 1;
@@ -56,10 +54,22 @@ TetEdges add_straight_mid_nodes(TetMesh& mesh) {
       if (i == 0 || here[i].high != here[i - 1].high) {
         edges.high[++e] = here[i].high;
         edges.low[e] = static_cast<VertexIndex>(v);
-        mesh.points[corners + e] = 0.5 * (mesh.points[v] + mesh.points[here[i].high]);
       }
-      mesh.mid_nodes[here[i].tet_edge / 6][here[i].tet_edge % 6] = static_cast<VertexIndex>(corners + e);
+      of_tet[here[i].tet_edge / 6][here[i].tet_edge % 6] = e;
     }
+  });
+  return edges;
+}
+
+TetEdges add_straight_mid_nodes(TetMesh& mesh) {
+  const std::size_t corners = mesh.points.size();
+  TetEdges edges = edges_of(mesh, mesh.mid_nodes);
+  mesh.points.resize(corners + edges.size());
+  parallel_for(edges.size(), [&](std::size_t e) {
+    mesh.points[corners + e] = 0.5 * (mesh.points[edges.low[e]] + mesh.points[edges.high[e]]);
+  });
+  parallel_for(mesh.mid_nodes.size(), [&](std::size_t t) {
+    for (VertexIndex& node : mesh.mid_nodes[t]) node += static_cast<VertexIndex>(corners);
   });
   return edges;
 }

@@ -18,6 +18,9 @@ struct TetEdges {
   std::uint32_t find(VertexIndex a, VertexIndex b) const;
 };
 
+/// And which ones each tet has, in the order of kTetEdges.
+TetEdges edges_of(const TetMesh& mesh, std::vector<std::array<std::uint32_t, 6>>& of_tet);
+
 /// Gives a linear mesh straight mid-side nodes: the one of edge e is points[corners + e].
 TetEdges add_straight_mid_nodes(TetMesh& mesh);
 

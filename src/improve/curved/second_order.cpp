@@ -4,12 +4,16 @@
 
 #include "base/core/parallel.h"
 #include "base/core/thread_limit.h"
+#include "base/geometry/curved_tet.h"
 #include "base/geometry/measures.h"
+#include "base/geometry/tet_lattice.h"
 #include "base/mesh/features.h"
 #include "base/mesh/quadratic_nodes.h"
 #include "improve/curved/bends.h"
 #include "improve/curved/curved.h"
 #include "improve/curved/easing.h"
+#include "improve/curved/high_order.h"
+#include "improve/curved/inner_nodes.h"
 #include "improve/curved/mid_nodes.h"
 #include "improve/curved/smooth_surface.h"
 
@@ -28,7 +32,7 @@ namespace {
 // Room for the answer of one element.
 struct Judged {
   double scaled = 1;
-  bool valid = true;
+  Validity validity = Validity::kValid;
 };
 
 // Corners that elements held on their way to the true geometry try so often.
@@ -37,18 +41,32 @@ constexpr int kRounds = 4;
 // Edges that bend by so little are straight but for rounding.
 constexpr double kStraightJacobian = 1 - 1e-9;  // as a bound of the scaled Jacobian
 
+Judged judge_high(const TetMesh& mesh, TetIndex t) {
+  std::array<Vec3, 35> room;
+  const std::span<const Vec3> nodes = nodes_of_tet(mesh, t, room);
+  if (least_scaled_jacobian_bound(mesh.order(), nodes) > kStraightJacobian) return {};
+  constexpr double kBent = 0.5;
+  constexpr std::size_t kPartsOfJudged = 64;
+  const JacobianRange range = jacobian_range(mesh.order(), nodes);
+  const bool is_bent = range.least < kBent * range.straight;
+  const double least = is_bent ? least_jacobian(mesh.order(), nodes, kPartsOfJudged) : range.least;
+  return {range.straight == 0 ? 0 : least / std::abs(range.straight), validity_of(mesh.order(), nodes)};
+}
+
 Judged judge(const TetMesh& mesh, TetIndex t) {
+  if (mesh.high_order > 0) return judge_high(mesh, t);
   const QuadraticTet nodes = quadratic_nodes(mesh, t);
   if (least_scaled_jacobian_bound(nodes) > kStraightJacobian) return {};
   const auto coefficients = jacobian_coefficients(nodes);
   const double least = *std::min_element(coefficients.begin(), coefficients.end());
   const double straight = six_volumes(nodes[0], nodes[1], nodes[2], nodes[3]);
-  return {straight == 0 ? 0 : least / std::abs(straight), has_positive_jacobian(nodes)};
+  return {straight == 0 ? 0 : least / std::abs(straight),
+          has_positive_jacobian(nodes) ? Validity::kValid : Validity::kInvalid};
 }
 
 void refuse_mid_nodes(const TetMesh& mesh) {
-  if (mesh.is_second_order())
-    throw InputError("the mesh is of second order already; take it back to first order first");
+  if (mesh.order() > 1)
+    throw InputError(fmt::format("the mesh is of order {} already; take it back to first order first", mesh.order()));
 }
 
 /// What is proven of the result, by its coordinates.
@@ -61,8 +79,25 @@ void prove(const TetMesh& mesh, SecondOrderSummary& summary, const RunContext& c
   throw MeshingError(fmt::format(
       "element {} at ({:.6g}, {:.6g}, {:.6g}) is so flat that rounding turns it when its edges get nodes in their "
       "middle "
-      "({} such elements): no second order for this mesh. Improve it first, or move the model to the origin.",
+      "({} such elements): no higher order for this mesh. Improve it first, or move the model to the origin.",
       first.tet, first.at.x, first.at.y, first.at.z, found.invalid));
+}
+
+constexpr const char* kNoHighLayers = "`order` 3 and 4 are not for meshes with boundary layers: take 2";
+constexpr const char* kNoHighPeriods = "`order` 3 and 4 are not for periodic meshes: take 2";
+
+/// Of a mesh whose corners are where they will be.
+void add_nodes(TetMesh& mesh, int order, std::span<const VertexIndex> below, curved::Bends& bends,
+               SecondOrderSummary& summary, const RunContext& context) {
+  if (order > 2) {
+    curved::add_high_order(mesh, order, bends, summary, context);
+    curved::raise_worst_elements(mesh, context);
+  } else {
+    const curved::TetEdges edges = curved::add_straight_mid_nodes(mesh);
+    curved::add_edges_above(below, edges, bends);
+    curved::bend_edges(mesh, edges, bends.edges, summary, context);
+  }
+  prove(mesh, summary, context);
 }
 
 // Where curves are by angle alone: patches may meet where the surface is smooth.
@@ -75,6 +110,11 @@ Features sharp_features(const KnownSurface& surface, double feature_angle) {
 std::vector<double> volumes_of_elements(const TetMesh& mesh) {
   std::vector<double> volumes(mesh.tets.size());
   parallel_for(volumes.size(), [&](std::size_t t) {
+    if (mesh.high_order > 0) {
+      std::array<Vec3, 35> room;
+      volumes[t] = jacobian_range(mesh.order(), nodes_of_tet(mesh, static_cast<TetIndex>(t), room)).volume;
+      return;
+    }
     if (!mesh.is_second_order()) {
       const auto& [a, b, c, d] = mesh.tets[t];
       volumes[t] = signed_volume(mesh.points[a], mesh.points[b], mesh.points[c], mesh.points[d]);
@@ -108,20 +148,17 @@ SurfaceMesh boundary_of_mesh(const TetMesh& mesh) {
 
 SecondOrderSummary curve_to_surface(TetMesh& mesh, const std::vector<Edge>& sharp, const KnownSurface& surface,
                                     double feature_angle, std::span<const VertexIndex> below,
-                                    std::span<const VertexIndex> fixed, const RunContext& context) {
+                                    std::span<const VertexIndex> fixed, int order, const RunContext& context) {
   refuse_mid_nodes(mesh);
   SecondOrderSummary summary;
   curved::SmoothSurface smooth(surface.mesh(), surface.edges(), surface.tree(), sharp_features(surface, feature_angle));
-  curved::Bends bends = curved::find_bends(mesh, sharp, smooth);
+  curved::Bends bends = curved::find_bends(mesh, sharp, smooth, order);
   std::erase_if(bends.corners,
                 [&](const curved::CornerMove& move) { return std::ranges::binary_search(fixed, move.vertex); });
   curved::add_corners_above(below, bends);
   context.check();
   curved::move_corners(mesh, bends.corners, summary, context);
-  const curved::TetEdges edges = curved::add_straight_mid_nodes(mesh);
-  curved::add_edges_above(below, edges, bends);
-  curved::bend_edges(mesh, edges, bends.edges, summary, context);
-  prove(mesh, summary, context);
+  add_nodes(mesh, order, below, bends, summary, context);
   return summary;
 }
 
@@ -142,14 +179,11 @@ SecondOrderSummary move_to_geometry(TetMesh& mesh, const TrueGeometry& geometry,
 }
 
 SecondOrderSummary curve_to_geometry(TetMesh& mesh, const TrueGeometry& geometry, std::span<const VertexIndex> below,
-                                     const RunContext& context) {
+                                     int order, const RunContext& context) {
   refuse_mid_nodes(mesh);
   SecondOrderSummary summary;
-  curved::Bends bends = curved::find_bends(mesh, geometry);
-  const curved::TetEdges edges = curved::add_straight_mid_nodes(mesh);
-  curved::add_edges_above(below, edges, bends);
-  curved::bend_edges(mesh, edges, bends.edges, summary, context);
-  prove(mesh, summary, context);
+  curved::Bends bends = curved::find_bends(mesh, geometry, order);
+  add_nodes(mesh, order, below, bends, summary, context);
   return summary;
 }
 
@@ -184,36 +218,44 @@ std::vector<double> volumes_cut_off(const TetMesh& mesh, const TrueGeometry& geo
       const auto found = std::ranges::lower_bound(bends, edge, {}, &curved::EdgeBend::edge);
       if (found == bends.end() || found->edge != edge) continue;
       for (int face = 0; face < 4; ++face)
-        if (face != i && face != j) of_region[region] += dot(area[face], found->by) / 3;
+        if (face != i && face != j) of_region[region] += dot(area[face], found->by[0]) / 3;
     }
   }
   return of_region;
 }
 
-SecondOrderSummary add_straight_edges(TetMesh& mesh, const RunContext& context) {
+SecondOrderSummary add_straight_edges(TetMesh& mesh, int order, const RunContext& context) {
   refuse_mid_nodes(mesh);
   SecondOrderSummary summary;
-  const curved::TetEdges edges = curved::add_straight_mid_nodes(mesh);
-  summary.edges = summary.straight = edges.size();
-  prove(mesh, summary, context);
+  curved::Bends none;
+  add_nodes(mesh, order, {}, none, summary, context);
   return summary;
 }
 
 SecondOrderSummary make_second_order(TetMesh& mesh, const SurfaceMesh* surface, double feature_angle,
                                      const RunContext& context) {
+  return make_curved(mesh, 2, surface, feature_angle, context);
+}
+
+SecondOrderSummary make_curved(TetMesh& mesh, int order, const SurfaceMesh* surface, double feature_angle,
+                               const RunContext& context) {
+  if (order < 2 || order > kMostOrder) throw OptionError(fmt::format("`order`: {} is none of 2, 3 and 4", order));
+  if (order > 2 && !mesh.wide_cells.empty()) throw OptionError(kNoHighLayers);
+  if (order > 2 && !mesh.periods.empty()) throw OptionError(kNoHighPeriods);
   const ThreadLimit limit(context.threads);
-  if (!surface) return add_straight_edges(mesh, context);
+  if (!surface) return add_straight_edges(mesh, order, context);
   const KnownSurface known(*surface, feature_angle);
   return curve_to_surface(mesh, detect_features(boundary_of_mesh(mesh), feature_angle).edges, known, feature_angle, {},
-                          {}, context);
+                          {}, order, context);
 }
 
 void make_linear(TetMesh& mesh) {
-  if (!mesh.is_second_order()) return;
+  if (mesh.order() == 1) return;
   VertexIndex corners = 0;
   for (const Tet& t : mesh.tets) corners = std::max(corners, 1 + *std::max_element(t.begin(), t.end()));
   mesh.points.resize(corners);
-  mesh.mid_nodes.clear();
+  mesh.mid_nodes.clear(), mesh.high_nodes.clear();
+  mesh.high_order = 0;
   std::erase_if(mesh.periodic_nodes, [&](const auto& pair) { return pair[1] >= corners || pair[2] >= corners; });
   for (NamedSet& set : mesh.sets)
     if (set.kind == NamedSet::Kind::kNodes) std::erase_if(set.members, [&](std::uint32_t v) { return v >= corners; });
@@ -221,7 +263,7 @@ void make_linear(TetMesh& mesh) {
 
 JacobianSummary check_jacobians(const TetMesh& mesh, const RunContext& context) {
   JacobianSummary summary;
-  if (!mesh.is_second_order()) return summary;
+  if (mesh.order() == 1) return summary;
   const ThreadLimit limit(context.threads);
   std::vector<Judged> judged(mesh.tets.size());
   parallel_for(judged.size(), [&](std::size_t t) { judged[t] = judge(mesh, static_cast<TetIndex>(t)); });
@@ -231,8 +273,9 @@ JacobianSummary check_jacobians(const TetMesh& mesh, const RunContext& context) 
       summary.least_scaled_jacobian = judged[t].scaled;
       summary.least_tet = t;
     }
-    if (judged[t].valid) continue;
+    if (judged[t].validity == Validity::kValid) continue;
     ++summary.invalid;
+    summary.undecided += judged[t].validity == Validity::kUndecided;
     const auto& [a, b, c, d] = mesh.tets[t];
     if (summary.first.size() < kListed)
       summary.first.push_back(

@@ -1,6 +1,8 @@
 #include "base/core/parallel.h"
 #include "base/mesh/edge_table.h"
+#include "base/mesh/face_table.h"
 #include "improve/curved/bends.h"
+#include "improve/curved/node_places.h"
 
 #include <algorithm>
 #include <optional>
@@ -18,8 +20,8 @@ constexpr double kStraightTrueBend = 1e-9;
 /// Faces of the mesh that lie on the geometry, and where their corners and edges belong.
 class TrueSearch {
  public:
-  TrueSearch(const TetMesh& mesh, const TrueGeometry& geometry)
-      : mesh_(mesh), geometry_(geometry), faces_(mesh.boundary), patch_(mesh.patch) {
+  TrueSearch(const TetMesh& mesh, const TrueGeometry& geometry, int order)
+      : mesh_(mesh), geometry_(geometry), order_(order), faces_(mesh.boundary), patch_(mesh.patch) {
     patch_.resize(faces_.size());
     faces_.insert(faces_.end(), mesh.interfaces.begin(), mesh.interfaces.end());
     std::vector<std::uint32_t> inside = mesh.interface_patch;
@@ -38,15 +40,24 @@ class TrueSearch {
     bends.too_far = static_cast<std::size_t>(std::count(too_far_.begin(), too_far_.end(), 1));
     for (VertexIndex v = 0; v < moved.size(); ++v)
       if (moved[v] && *moved[v] != Vec3{}) bends.corners.push_back({v, *moved[v]});
-    std::vector<std::optional<Vec3>> bend(table_.size());
+    std::vector<std::optional<NodeMoves>> bend(table_.size());
     parallel_for(table_.size(), [&](std::size_t e) { bend[e] = bend_of(e, moved); });
     for (std::size_t e = 0; e < bend.size(); ++e)
       if (bend[e]) bends.edges.push_back({table_.edges[e], *bend[e]});
+    if (nodes_in_face(order_) > 0) add_faces(moved, bends);
     return bends;
   }
 
  private:
   using Patches = std::vector<std::uint32_t>;
+
+  void add_faces(const std::vector<std::optional<Vec3>>& moved, Bends& bends) const {
+    std::vector<std::optional<NodeMoves>> bend(faces_.size());
+    parallel_for(faces_.size(), [&](std::size_t f) { bend[f] = bend_of_face(f, moved); });
+    for (std::size_t f = 0; f < faces_.size(); ++f)
+      if (bend[f]) bends.faces.push_back({face_key(faces_[f]), *bend[f]});
+    std::ranges::sort(bends.faces, {}, &FaceBend::face);
+  }
 
   void find_patches() {
     patches_of_.resize(mesh_.points.size());
@@ -137,24 +148,59 @@ class TrueSearch {
     return *to - p;
   }
 
-  std::optional<Vec3> bend_of(std::size_t e, const std::vector<std::optional<Vec3>>& moved) const {
-    const auto& [a, b] = table_.edges[e];
-    if (!moved[a] || !moved[b] || too_far_[a] || too_far_[b]) return std::nullopt;
+  bool stays_away(VertexIndex v, const std::vector<std::optional<Vec3>>& moved) const {
+    return !moved[v] || too_far_[v] != 0;
+  }
+
+  Patches patches_of_edge(std::size_t e) const {
     Patches patches;
     for (const std::uint32_t h : table_.uses(e)) patches.push_back(patch_[h / 3]);
     std::sort(patches.begin(), patches.end());
     patches.erase(std::unique(patches.begin(), patches.end()), patches.end());
-    const Vec3 from = mesh_.points[a] + *moved[a], to = mesh_.points[b] + *moved[b], middle = 0.5 * (from + to);
-    auto on = on_line(patches, middle, kMostTrueBend * distance(from, to));
-    if (!on) on = on_patch(patches, middle);
-    if (!on) return std::nullopt;
-    const double part = distance(*on, middle) / distance(from, to);
-    if (!(part > kStraightTrueBend && part <= kMostTrueBend)) return std::nullopt;
-    return *on - middle;
+    return patches;
+  }
+
+  std::optional<NodeMoves> bend_of(std::size_t e, const std::vector<std::optional<Vec3>>& moved) const {
+    const auto& [a, b] = table_.edges[e];
+    if (stays_away(a, moved) || stays_away(b, moved)) return std::nullopt;
+    const Patches patches = patches_of_edge(e);
+    const std::array<Vec3, 2> ends{mesh_.points[a] + *moved[a], mesh_.points[b] + *moved[b]};
+    const double size = distance(ends[0], ends[1]);
+    NodeMoves by{};
+    double most = 0;
+    for (std::size_t k = 0; k < nodes_in_edge(order_); ++k) {
+      const Vec3 from = in_edge(order_, k).mean_of(ends);
+      auto on = on_line(patches, from, kMostTrueBend * size);
+      if (!on) on = on_patch(patches, from);
+      if (!on) return std::nullopt;
+      by[k] = *on - from;
+      most = std::max(most, length(by[k]) / size);
+    }
+    if (!(most > kStraightTrueBend && most <= kMostTrueBend)) return std::nullopt;
+    return by;
+  }
+
+  std::optional<NodeMoves> bend_of_face(std::size_t f, const std::vector<std::optional<Vec3>>& moved) const {
+    const Triangle corners = face_key(faces_[f]);
+    std::array<Vec3, 3> at;
+    for (std::size_t i = 0; i < 3; ++i) {
+      if (stays_away(corners[i], moved)) return std::nullopt;
+      at[i] = mesh_.points[corners[i]] + *moved[corners[i]];
+    }
+    const double size = std::max({distance(at[0], at[1]), distance(at[1], at[2]), distance(at[2], at[0])});
+    NodeMoves by{};
+    for (std::size_t k = 0; k < nodes_in_face(order_); ++k) {
+      const Vec3 from = in_face(order_, k).mean_of(at);
+      const auto on = on_patch({patch_[f]}, from);
+      if (!on || !(distance(*on, from) <= kMostTrueBend * size)) return std::nullopt;
+      by[k] = *on - from;
+    }
+    return by;
   }
 
   const TetMesh& mesh_;
   const TrueGeometry& geometry_;
+  int order_;
   std::vector<Triangle> faces_;  ///< the boundary, and interfaces
   std::vector<std::uint32_t> patch_;
   EdgeTable table_;
@@ -165,8 +211,8 @@ class TrueSearch {
 
 }  // namespace
 
-Bends find_bends(const TetMesh& mesh, const TrueGeometry& geometry) {
-  return TrueSearch(mesh, geometry).run();
+Bends find_bends(const TetMesh& mesh, const TrueGeometry& geometry, int order) {
+  return TrueSearch(mesh, geometry, order).run();
 }
 
 }  // namespace octafront::curved

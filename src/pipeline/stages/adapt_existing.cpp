@@ -56,10 +56,11 @@ TetMesh linear_and_adaptable(const TetMesh& mesh, Run& run) {
   make_linear(given);
   run.stage("check of the input", [&](const Stage& stage) {
     require_adaptable(given, run);
-    if (mesh.is_second_order())
+    if (mesh.order() > 1)
       stage.note(
-          "elements of second order are taken as linear ones, without their mid-side nodes, and stay so: "
-          "`octafront convert --order 2` bends what is written");
+          fmt::format("elements of order {} are taken as linear ones, without their further nodes, and stay so: "
+                      "`octafront convert --order {}` adds nodes to what is written",
+                      mesh.order(), mesh.order()));
   });
   return given;
 }

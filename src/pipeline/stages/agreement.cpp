@@ -23,7 +23,7 @@ void hash_into(BytesHash& hash, const SizeField& sizes, const std::vector<Vec3>&
 void hash_into(BytesHash& hash, const TetMesh& mesh, Tets tets) {
   if (tets == Tets::kAll) hash.add(mesh.tets), hash.add(mesh.region);
   hash.add(mesh.points), hash.add(mesh.boundary), hash.add(mesh.patch);
-  hash.add(mesh.interfaces), hash.add(mesh.interface_patch), hash.add(mesh.mid_nodes);
+  hash.add(mesh.interfaces), hash.add(mesh.interface_patch), hash.add(mesh.mid_nodes), hash.add(mesh.high_nodes);
 }
 
 /// hash_into(hash) only where somebody is to agree.

@@ -98,7 +98,7 @@ Domain domain_of(const Domain& whole, const std::vector<PartContact>& contacts,
   part.true_volumes = those(whole.true_volumes, regions);
   part.chord_depths = those(whole.chord_depths, regions);
   part.volumes = those(whole.volumes, regions);
-  part.unit = whole.unit, part.frame = whole.frame, part.format = whole.format;
+  part.densities = whole.densities, part.unit = whole.unit, part.frame = whole.frame, part.format = whole.format;
   part.contacts = contacts_within(contacts, regions);
   return part;
 }

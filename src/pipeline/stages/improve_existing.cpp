@@ -141,8 +141,8 @@ void raise_order(TetMesh& mesh, const Ground* ground, Run& run) {
   run.stage("second order", [&](const Stage& stage) {
     run.report.second_order =
         ground ? curve_to_surface(mesh, ground->of_mesh.edges, ground->surface, run.options.surface.angle_of_features(),
-                                  {}, paired_vertices(mesh), stage.context())
-               : add_straight_edges(mesh, stage.context());
+                                  {}, paired_vertices(mesh), run.options.order, stage.context())
+               : add_straight_edges(mesh, run.options.order, stage.context());
     count_edges(run.report.second_order, stage);
   });
 }
@@ -153,11 +153,13 @@ Improved improve_existing(const TetMesh& mesh, const Options& options, const Sur
                           const RunContext& context) {
   Run run(options, context);
   Improved result;
-  run.stage("check of the input", [&](const Stage& stage) { require_valid(mesh, stage.context()); });
   result.mesh = mesh;
   make_linear(result.mesh);
-  if (mesh.is_second_order() && options.order < 2)
-    run.report.stages.back().notes.emplace_back("mid-side nodes are left out; `order` 2 makes new ones");
+  // Curved elements need not be valid: they are made anew.
+  run.stage("check of the input", [&](const Stage& stage) { require_valid(result.mesh, stage.context()); });
+  if (mesh.order() > options.order)
+    run.report.stages.back().notes.emplace_back(
+        fmt::format("nodes behind the corners are left out; `order` {} makes new ones", mesh.order()));
   result.before = summarize_quality(mesh);
   run.report.input_volume = enclosed_volume(boundary_of(mesh));
   refuse_sizes_required(options.require, "improvement keeps the sizes that there are");

@@ -162,6 +162,7 @@ std::uint64_t mesh_hash(const TetMesh& mesh, const Comm& comm) {
   for (const std::uint32_t patch : mesh.patch) hash.add(patch);
   for (const auto& mids : mesh.mid_nodes)
     for (const VertexIndex v : mids) hash.add(v);
+  for (const VertexIndex v : mesh.high_nodes) hash.add(v);
   for (const Triangle& face : mesh.interfaces)
     for (const VertexIndex v : face) hash.add(v);
   for (const std::uint32_t patch : mesh.interface_patch) hash.add(patch);

@@ -512,14 +512,15 @@ void improve_elements(const Prepared& input, Filled& filled, Run& run, const Imp
 void raise_order(const Prepared& input, Filled& filled, Run& run) {
   if (run.options.order < 2) return;
   run.stage("second order", [&](const Stage& stage) {
+    const int order = run.options.order;
     TetMesh& mesh = filled.mesh;
     Remeshed& boundary = filled.boundary;
     const std::span<const VertexIndex> below = vertices_below(filled);
     run.report.second_order = on_ground(filled, [&] {
-      if (keeps_surface(run.options)) return add_straight_edges(mesh, stage.context());
-      if (input.geometry) return curve_to_geometry(mesh, *input.geometry, below, stage.context());
+      if (keeps_surface(run.options)) return add_straight_edges(mesh, order, stage.context());
+      if (input.geometry) return curve_to_geometry(mesh, *input.geometry, below, order, stage.context());
       return curve_to_surface(mesh, boundary.features.edges, input.surface, run.options.surface.angle_of_features(),
-                              below, vertices_on_faces(boundary.surface, input.cell), stage.context());
+                              below, vertices_on_faces(boundary.surface, input.cell), order, stage.context());
     });
     pair_mid_nodes(mesh, input.cell, stage);
     std::copy_n(mesh.points.begin(), boundary.surface.points.size(), boundary.surface.points.begin());
@@ -591,7 +592,7 @@ void describe(const TetMesh& mesh, Report& report, const Comm& comm) {
   describe_contacts(mesh, report);
   report.points = mesh.points.size();
   report.boundary_faces = mesh.boundary.size();
-  report.volume = mesh.is_second_order() ? curved_volume(mesh) : enclosed_volume(boundary_of(mesh));
+  report.volume = mesh.order() > 1 ? curved_volume(mesh) : enclosed_volume(boundary_of(mesh));
   if (comm.alone()) {
     parallel_invoke([&] { describe_quality(mesh, report); }, [&] { report.hash = mesh_hash(mesh); });
   } else {

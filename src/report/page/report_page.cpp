@@ -1,4 +1,5 @@
 #include <octafront/error.h>
+#include <octafront/picture.h>
 #include <octafront/quality.h>
 #include <octafront/report_page.h>
 #include <octafront/run_context.h>
@@ -7,9 +8,11 @@
 #include "base/core/thread_limit.h"
 #include "report/page/assets.h"
 #include "report/page/mesh_streams.h"
+#include "report/picture/colours.h"
 
 #include <algorithm>
 #include <nlohmann/json.hpp>
+#include <string_view>
 
 namespace octafront {
 
@@ -44,6 +47,12 @@ Json names(const std::vector<std::uint32_t>& number, const std::vector<std::stri
   return all;
 }
 
+Json hex_of_stops() {
+  Json stops = Json::array();
+  for (const Rgb stop : kPoorToGood) stops.push_back(hex_of(stop));
+  return stops;
+}
+
 Json facts_of(const TetMesh& mesh, const MeshStreams& streams) {
   Json patches = names(mesh.patch, mesh.patch_names, "patch ");
   if (!mesh.interfaces.empty()) patches = names(mesh.interface_patch, mesh.patch_names, "patch ", std::move(patches));
@@ -61,6 +70,7 @@ Json facts_of(const TetMesh& mesh, const MeshStreams& streams) {
             {"max_dihedral", scale(kMaxDihedralScale)},
             {"size_ratio", scale(kSizeRatioScale)},
             {"layers", scale(kLayersScale)}}},
+          {"poor_to_good", hex_of_stops()},
           {"has_sizes", streams.has_sizes},
           {"has_layers", streams.has_layers}};
 }
@@ -86,6 +96,19 @@ void add_element(std::string& page, const std::string& type, const std::string& 
   page += "<script type=\"" + type + "\" id=\"" + id + "\">" + content + "</script>\n";
 }
 
+/// For browsers that cannot draw: a picture with few colours, which packs well.
+std::string still_picture(const TetMesh& mesh, const Json& report, const RunContext& context) {
+  PictureOptions options;
+  options.width = 560, options.height = 420;
+  if (report.contains("unit") && report["unit"].is_string()) options.unit = report["unit"];
+  Picture picture = draw_picture(mesh, options, context);
+  for (std::uint8_t& channel : picture.pixels) {
+    constexpr int kStep = 17;  // 0 and 255 stay what they are
+    channel = static_cast<std::uint8_t>((channel + kStep / 2) / kStep * kStep);
+  }
+  return "data:image/png;base64," + to_base64(to_png(picture));
+}
+
 }  // namespace
 
 std::string report_page(const TetMesh& mesh, const SizeField* sizes, const std::string& report,
@@ -100,6 +123,8 @@ std::string report_page(const TetMesh& mesh, const SizeField* sizes, const std::
       text.size(), [&](std::size_t i) { text[i] = packed(streams.all[i].second); }, Split::kSingly);
   context.check();
   std::string page(page_asset::kBefore);
+  constexpr std::string_view kNoPicture = "src=\"data:,\"";
+  page.replace(page.find(kNoPicture), kNoPicture.size(), "src=\"" + still_picture(mesh, json, context) + "\"");
   add_element(page, "application/json", "report", embedded(json));
   add_element(page, "application/json", "facts", embedded(facts_of(mesh, streams)));
   for (std::size_t i = 0; i < text.size(); ++i)

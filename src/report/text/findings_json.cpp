@@ -1,4 +1,7 @@
 #include <octafront/adapt.h>
+#include <octafront/carry.h>
+#include <octafront/level_set.h>
+#include <octafront/move.h>
 #include <octafront/report.h>
 
 #include <nlohmann/json.hpp>
@@ -76,6 +79,72 @@ std::string to_json(const std::vector<SolverFinding>& findings) {
                    {"count", f.count},
                    {"worst", worst}});
   }
+  return all.dump(2, ' ', false, Json::error_handler_t::replace);
+}
+
+namespace {
+
+Json json_of_extent(const FieldExtent& extent) {
+  return {{"integral", extent.integral}, {"least", extent.least}, {"greatest", extent.greatest}};
+}
+
+}  // namespace
+
+std::string to_json(const CarryReport& r) {
+  return Json{{"nodes", r.nodes},
+              {"elements", r.elements},
+              {"copied_nodes", r.copied_nodes},
+              {"copied_elements", r.copied_elements},
+              {"volume_before", r.volume_before},
+              {"volume_after", r.volume_after},
+              {"uncovered", r.uncovered},
+              {"lost", r.lost},
+              {"outside_nodes", r.outside_nodes},
+              {"farthest", r.farthest},
+              {"farthest_at", place(r.farthest_at)},
+              {"by_region", r.by_region},
+              {"notes", r.notes}}
+      .dump();
+}
+
+std::string to_json(const std::vector<LevelSetReport>& reports) {
+  Json all = Json::array();
+  for (const LevelSetReport& r : reports)
+    all.push_back({{"name", r.name},
+                   {"moved", r.moved},
+                   {"divided", r.divided},
+                   {"on", r.on},
+                   {"elements", r.elements},
+                   {"volume", r.volume},
+                   {"triangles", r.triangles},
+                   {"area", r.area},
+                   {"pieces", r.pieces},
+                   {"dropped", r.dropped}});
+  return all.dump(2, ' ', false, Json::error_handler_t::replace);
+}
+
+std::string to_json(const std::vector<MoveStep>& history) {
+  Json all = Json::array();
+  for (const MoveStep& s : history)
+    all.push_back({{"fraction", s.fraction},
+                   {"change", s.change},
+                   {"elements", s.elements},
+                   {"beta_min", s.beta_min},
+                   {"beta_mean", s.beta_mean},
+                   {"volume", s.volume}});
+  return all.dump(2, ' ', false, Json::error_handler_t::replace);
+}
+
+std::string fields_to_json(const CarryReport& report) {
+  Json all = Json::array();
+  for (const FieldReport& f : report.fields)
+    all.push_back({{"name", f.name},
+                   {"of", f.of_elements ? "elements" : "points"},
+                   {"components", f.components},
+                   {"before", json_of_extent(f.before)},
+                   {"after", json_of_extent(f.after)},
+                   {"integral_error", f.integral_error},
+                   {"beyond", f.beyond}});
   return all.dump(2, ' ', false, Json::error_handler_t::replace);
 }
 

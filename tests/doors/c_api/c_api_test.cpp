@@ -166,6 +166,40 @@ TEST(CApi, IndicesOutOfRangeAreRefusedBeforeAnybodyFollowsThem) {
   EXPECT_EQ(octafront_mesh_summary(mesh.get()), nullptr);
 }
 
+TEST(CApi, FieldsGoToOtherMeshesThatAreCutAndMove) {
+  const Surface cube = surface_of(testing::cube(1));
+  const Mesh old = meshed(cube, R"({"size": 0.5})"), other = meshed(cube, R"({"size": 0.4})");
+  octafront_array points{}, tets{}, new_tets{};
+  ASSERT_EQ(octafront_mesh_array(old.get(), "points", &points), 0);
+  ASSERT_EQ(octafront_mesh_array(old.get(), "tets", &tets), 0);
+  ASSERT_EQ(octafront_mesh_array(other.get(), "tets", &new_tets), 0);
+  const std::vector<double> ones(tets.rows, 1), by(3 * points.rows, 2);
+  std::vector<double> made(new_tets.rows), heights;
+  const octafront_field field{"one", 1, 1, ones.data(), made.data()};
+  const Job carry(octafront_carry(old.get(), other.get(), 0, &field, 1, nullptr, 1));
+  ASSERT_EQ(status_at_end(carry), OCTAFRONT_DONE);
+  for (const double value : made) EXPECT_EQ(value, 1);
+  EXPECT_NE(std::string(octafront_job_report(carry.get())).find("integral_error"), std::string::npos);
+
+  const auto* coordinates = static_cast<const double*>(points.data);
+  for (std::size_t v = 0; v < points.rows; ++v) heights.push_back(coordinates[3 * v + 2]);
+  const octafront_level_set plane{"low", heights.data(), 0.3};
+  const Job cut(octafront_cut(old.get(), &plane, 1, nullptr, 1));
+  ASSERT_EQ(status_at_end(cut), OCTAFRONT_DONE);
+  const Mesh divided(octafront_job_take_mesh(cut.get()));
+  std::size_t length = 0;
+  EXPECT_EQ(std::string(octafront_mesh_name(divided.get(), "region_names", 1, &length)), "low");
+
+  const Job move(octafront_move(old.get(), by.data(), &field, 1, nullptr, 1));
+  ASSERT_EQ(status_at_end(move), OCTAFRONT_DONE);
+  const Mesh moved(octafront_job_take_mesh(move.get()));
+  octafront_array values{};
+  ASSERT_EQ(octafront_mesh_field(moved.get(), 0, &values), 0);
+  EXPECT_EQ(values.rows, tets.rows);
+  EXPECT_EQ(static_cast<const double*>(values.data)[0], 1);
+  EXPECT_NE(octafront_mesh_field(moved.get(), 1, &values), 0);
+}
+
 TEST(CApi, ArraysNamesAndSetsComeBackAsTheyWent) {
   const Surface cube = surface_of(testing::cube(1));
   const Mesh mesh = meshed(cube, R"({"size": 0.5})");

@@ -189,8 +189,33 @@ class Browser(unittest.TestCase):
             return [...count.values()].filter(n => n % 2).length""")
         self.assertEqual(odd, 0)
 
-    def test_colours_span_what_the_elements_have(self):
+    def test_colours_tell_what_quality_is_worth(self):
         view = self.open()
+        self.assertEqual(view.js("return octafront.inner.endsOfColours(octafront.mesh, 'beta')"), [0, 255])
+        legend = view.driver.find_element(By.ID, "legend").text
+        self.assertIn("0.00", legend)
+        self.assertIn("1.00", legend)
+
+    def test_a_browser_that_cannot_draw_shows_a_still_picture(self):
+        script = self.driver.execute_cdp_cmd("Page.addScriptToEvaluateOnNewDocument", {
+            "source": "HTMLCanvasElement.prototype.getContext = () => null"})
+        try:
+            self.driver.get(self.page.resolve().as_uri())
+            end = time.time() + 30
+            while not self.driver.find_elements(By.ID, "beta-histogram") and not self.driver.find_elements(By.CSS_SELECTOR, "#numbers .panel"):
+                self.assertLess(time.time(), end)
+                time.sleep(0.1)
+            still = self.driver.find_element(By.ID, "still")
+            self.assertTrue(still.is_displayed())
+            self.assertGreater(self.driver.execute_script("return arguments[0].naturalWidth", still), 500)
+            self.assertIn("no WebGL 2", self.driver.find_element(By.ID, "message").text)
+        finally:
+            self.driver.execute_cdp_cmd("Page.removeScriptToEvaluateOnNewDocument", script)
+
+    def test_stretched_colours_span_what_the_elements_have(self):
+        view = self.open()
+        self.assertFalse(view.driver.find_element(By.ID, "still").is_displayed())
+        view.click("#stretch")
         low, high = view.js("return octafront.inner.fittedEnds(octafront.mesh, 'beta')")
         counts = view.js("return octafront.inner.countsOf(octafront.mesh.values.beta, 256)")
         total = sum(counts)

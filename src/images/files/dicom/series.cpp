@@ -1,6 +1,7 @@
 #include "images/files/dicom/series.h"
 
 #include <octafront/error.h>
+#include <octafront/limits.h>
 
 #include "base/core/elementary.h"
 #include "base/core/parallel.h"
@@ -379,6 +380,7 @@ Image read_dicom(const Reading& reading) {
 }
 
 std::vector<std::string> dicom_files_in(const std::string& folder, const RunContext& context) {
+  require_in_folders(folder);
   std::vector<std::string> files;
   std::uint64_t seen = 0;
   constexpr std::uint64_t kMostFiles = 200000;
@@ -392,6 +394,7 @@ std::vector<std::string> dicom_files_in(const std::string& folder, const RunCont
     std::error_code ignored;
     if (!it->is_regular_file(ignored)) continue;
     std::array<char, 256> head{};
+    require_in_folders(it->path().string());
     std::ifstream stream(it->path(), std::ios::binary);
     stream.read(head.data(), head.size());
     if (is_dicom({head.data(), static_cast<std::size_t>(stream.gcount())})) files.push_back(it->path().string());

@@ -1,7 +1,9 @@
-// --- colours.js: scales that eyes with colour blindness tell apart: orange against blue, through a light middle; the
-// palette of Okabe and Ito for what has no order.
+// --- colours.js: scales that eyes with colour blindness tell apart: what is poor is dark and warm, what is good light and
+// cool, as in pictures (report/picture); sizes orange against blue, through a light middle; the palette of Okabe and Ito
+// for what has no order.
 
-const POOR_TO_GOOD = ["#8c2d04", "#d9650f", "#f5b26b", "#f0e6d6", "#a9cce8", "#4f97d6"];
+const FACTS = json("facts");
+const POOR_TO_GOOD = FACTS.poor_to_good;
 const PALETTE = ["#56b4e9", "#e69f00", "#009e73", "#cc79a7", "#0072b2", "#d55e00", "#f0e442", "#9a9a9a"];
 
 const rgb = (hex) => [1, 3, 5].map((i) => parseInt(hex.slice(i, i + 2), 16));
@@ -27,22 +29,34 @@ function paletteColour(number) {
 
 const css = (colour) => `rgb(${colour.join(" ")})`;
 
-/** What elements can be coloured by. `stops` go from the least value to the largest. */
+/** What elements can be coloured by. `stops` go from the least value of `ends` to the largest. */
 const QUANTITIES = {
-  beta: { title: "quality β", stops: POOR_TO_GOOD, text: (v) => v.toFixed(2) },
-  min_dihedral: { title: "smallest dihedral angle", stops: POOR_TO_GOOD, text: (v) => v.toFixed(0) + "°" },
-  max_dihedral: { title: "largest dihedral angle", stops: [...POOR_TO_GOOD].reverse(), worstIsHigh: true, text: (v) => v.toFixed(0) + "°" },
+  beta: { title: "quality β", ends: [0, 1], stops: POOR_TO_GOOD, text: (v) => v.toFixed(2) },
+  min_dihedral: { title: "smallest dihedral angle", ends: [0, 70], stops: POOR_TO_GOOD, text: (v) => v.toFixed(0) + "°" },
+  max_dihedral: { title: "largest dihedral angle", ends: [70, 180], stops: [...POOR_TO_GOOD].reverse(), worstIsHigh: true, text: (v) => v.toFixed(0) + "°" },
   size_ratio: {
     title: "size: made over asked",
+    ends: [-1, 1],
     stops: ["#1b4f8f", "#4f97d6", "#a9cce8", "#f2efe8", "#f5b26b", "#d9650f", "#8c2d04"],
     worstIsHigh: true,
     text: (v) => "× " + (2 ** v).toFixed(2),
   },
-  layers: { title: "boundary layers at walls", stops: POOR_TO_GOOD, text: (v) => (100 * v).toFixed(0) + " %" },
+  layers: { title: "boundary layers at walls", ends: [0, 1], stops: POOR_TO_GOOD, text: (v) => (100 * v).toFixed(0) + " %" },
 };
 
 /**
- * The bytes between which the colours of a quantity change: all but the outermost two in a thousand elements, for a few
+ * The bytes between which the colours of a quantity change: the same in all meshes, so that they tell what a value is
+ * worth; or, stretched, those that the mesh has.
+ */
+let isStretched = false;
+function endsOfColours(mesh, quantity) {
+  if (isStretched) return fittedEnds(mesh, quantity);
+  const [low, high] = FACTS.scales[quantity];
+  return QUANTITIES[quantity].ends.map((value) => Math.round((255 * (value - low)) / (high - low)));
+}
+
+/**
+ * Of those that the mesh has: all but the outermost two in a thousand elements, for a few
  * would leave the others one colour. Without a mesh the whole scale.
  */
 function fittedEnds(mesh, quantity) {

@@ -173,9 +173,9 @@ function shapeOf([a, b, c, d]) {
 
 function showLegend() {
   const legend = byId("legend"), q = QUANTITIES[state.quantity];
-  byId("filter-row").hidden = !q;
+  byId("filter-row").hidden = byId("stretch-label").hidden = !q;
   if (!q) return legend.replaceChildren();
-  const ends = fittedEnds(mesh, state.quantity), [low, high] = ends.map((byte) => valueOf(mesh, state.quantity, byte));
+  const ends = endsOfColours(mesh, state.quantity), [low, high] = ends.map((byte) => valueOf(mesh, state.quantity, byte));
   const counts = countsOf(mesh.values[state.quantity], 256), some = (bytes) => bytes.some((n) => n > 0);
   legend.replaceChildren(make("i", { style: `background:linear-gradient(to right, ${q.stops.join(", ")})` }),
     axis((some(counts.slice(0, ends[0])) ? "≤ " : "") + q.text(low), q.text((low + high) / 2), (some(counts.slice(ends[1] + 1)) ? "≥ " : "") + q.text(high)));
@@ -319,6 +319,13 @@ function listenToControls() {
   select.replaceChildren(...choices.map((q) => make("option", { value: q }, QUANTITIES[q]?.title ?? q)));
   select.value = state.quantity;
   select.addEventListener("change", () => setQuantity(select.value));
+  byId("stretch").addEventListener("change", (event) => {
+    isStretched = event.target.checked;
+    showLegend();
+    byId("numbers").replaceChildren();
+    showNumbers();
+    rebuild();
+  });
   byId("edges").addEventListener("change", (event) => ((state.edges = event.target.checked), redraw()));
   byId("clip").addEventListener("change", (event) => toggleClip(event.target.checked));
   byId("clip-smooth").addEventListener("change", (event) => ((state.clip.smooth = event.target.checked), rebuild()));
@@ -429,7 +436,9 @@ async function start() {
     mesh = await decodeMesh();
     picture = new Picture(canvas);
   } catch (error) {
-    say(typeof DecompressionStream === "undefined" ? "the picture needs a browser of 2023 or later; the numbers are here" : error.message);
+    const why = typeof DecompressionStream === "undefined" ? "this browser is older than 2023" : error.message;
+    say(`a still picture, and the numbers: ${why}`);
+    for (const id of ["canvas", "triad", "scale-bar", "help"]) byId(id).style.display = "none";
     return showNumbers();
   }
   picture.onRestored = rebuild;
@@ -444,6 +453,7 @@ async function start() {
   picture.finish();
   performance.measure("first picture", { start: 0, end: performance.now() });
   say("");
+  byId("still").hidden = true;
   byId("controls").hidden = false;
   listenToPointers();
   listenToKeys();
@@ -459,6 +469,6 @@ async function start() {
 window.octafront = {
   state, camera, get mesh() { return mesh; }, get vertices() { return picture ? picture.solid.vertices : 0; },
   draw: () => drawNow(), finish: () => picture.finish(), rebuild: () => (facesWaiting = true), visibleFaces: () => visibleFaces(mesh, state),
-  inner: { along, countsOf, cross, dot, fittedEnds, moveClip, placeOf, planeOf, projector, setClipAxis, slice, valueOf, vertexData },
+  inner: { along, countsOf, cross, dot, endsOfColours, fittedEnds, moveClip, placeOf, planeOf, projector, setClipAxis, slice, valueOf, vertexData },
 };
 start();

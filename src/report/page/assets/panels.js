@@ -53,7 +53,7 @@ const axis = (...labels) => make("div", { class: "axis" }, ...labels.map((l) => 
 /** The colour that the picture has for a value. */
 function colourOfValue(mesh, facts, quantity, value) {
   const [low, high] = facts.scales[quantity];
-  const t = scaleOf(QUANTITIES[quantity].stops), i = 3 * placeOf(fittedEnds(mesh, quantity), (255 * (value - low)) / (high - low));
+  const t = scaleOf(QUANTITIES[quantity].stops), i = 3 * placeOf(endsOfColours(mesh, quantity), (255 * (value - low)) / (high - low));
   return css([t[i], t[i + 1], t[i + 2]]);
 }
 

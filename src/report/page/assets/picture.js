@@ -59,7 +59,7 @@ class Picture {
   constructor(canvas) {
     this.canvas = canvas;
     this.gl = canvas.getContext("webgl2", { alpha: false, antialias: true, powerPreference: "high-performance" });
-    if (!this.gl) throw new Error("this browser has no WebGL 2: the numbers are here, the picture is not");
+    if (!this.gl) throw new Error("this browser has no WebGL 2");
     canvas.addEventListener("webglcontextlost", (event) => event.preventDefault());
     canvas.addEventListener("webglcontextrestored", () => {
       this.prepare();

@@ -93,7 +93,7 @@ function visibleFaces(mesh, state) {
 function faceColours(mesh, quantity) {
   if (quantity === "region") return (t) => paletteColour(mesh.region[t]);
   if (quantity === "patch") return (t, patch) => (patch > 0 ? paletteColour(patch - 1) : [200, 200, 196]);
-  const table = scaleOf(QUANTITIES[quantity].stops), values = mesh.values[quantity], ends = fittedEnds(mesh, quantity);
+  const table = scaleOf(QUANTITIES[quantity].stops), values = mesh.values[quantity], ends = endsOfColours(mesh, quantity);
   return (t) => {
     const i = 3 * placeOf(ends, values[t]);
     return [table[i], table[i + 1], table[i + 2]];

@@ -1,0 +1,93 @@
+#include "carrying.h"
+
+#include <octafront/octafront.h>
+
+#include "commands.h"
+#include "inputs.h"
+#include "mesh_in_words.h"
+#include "targets.h"
+#include "text.h"
+
+#include <string>
+#include <utility>
+
+#include <fmt/core.h>
+
+namespace octafront::cli {
+namespace {
+
+bool carries_all(const Arguments& a) {
+  return a.carry.empty() || (a.carry.size() == 1 && a.carry[0] == "all");
+}
+
+void say_extent(const Session& session, const FieldReport& field, std::size_t k) {
+  const std::string name = field.components == 1 ? field.name : fmt::format("{}[{}]", field.name, k);
+  const char* of = field.of_elements ? "elements" : "nodes";
+  const auto line = [&](const char* when, const FieldExtent& extent) {
+    session.say(fmt::format("{:<16} {:<8} {:<6} {:>22.15g} {:>14.7g} {:>14.7g}\n", name, of, when, extent.integral[k],
+                            extent.least[k], extent.greatest[k]));
+  };
+  line("before", field.before), line("after", field.after);
+}
+
+void tell_carried(Session& session, const CarryReport& report) {
+  session.say_notes("fields", report.notes);
+  session.found({{"carry", Json::parse(to_json(report))}, {"carried", Json::parse(fields_to_json(report))}});
+  session.say(
+      fmt::format("{:<16} {:<8} {:<6} {:>22} {:>14} {:>14}\n", "field", "of", "", "integral", "least", "greatest"));
+  for (const FieldReport& field : report.fields)
+    for (std::size_t k = 0; k < field.components; ++k) say_extent(session, field, k);
+}
+
+}  // namespace
+
+std::vector<MeshField> fields_to_carry(Session& session, const TetMesh& mesh) {
+  const Arguments& a = session.arguments();
+  const bool is_default = carries_all(a);
+  if (a.carry.size() == 1 && a.carry[0] == "none") return {};
+  if (!some_target_holds_fields(a)) {
+    if (is_default) return {};
+    throw OptionError("--carry: no output holds fields; write .vtu, .vtk, .msh, .med, .exo, .cgns or .xdmf");
+  }
+  // What was not asked for is no reason to fail.
+  if (is_default && mesh.order() > 1) return {};
+  try {
+    FieldsOfFile found =
+        read_fields(a.input.string(), mesh, is_default ? std::vector<std::string>{} : a.carry, session.context());
+    session.say_notes("fields", found.notes);
+    return std::move(found.fields);
+  } catch (const InputError& error) {
+    if (!is_default) throw;
+    session.say_notes("fields", {fmt::format("no field goes along: {}", error.what())});
+    return {};
+  }
+}
+
+std::vector<MeshField> carried_fields(Session& session, const std::vector<MeshField>& fields, const TetMesh& before,
+                                      const TetMesh& now, OutsideNodes outside, const KnownItems* same) {
+  if (fields.empty()) return {};
+  CarriedFields made =
+      carry_fields(fields, before, now, session.arguments().options.carry, session.context(), outside, same);
+  tell_carried(session, made.report);
+  return std::move(made.fields);
+}
+
+void run_carry(Session& session) {
+  const Arguments& a = session.arguments();
+  check_mesh_targets(a);
+  if (!some_target_holds_fields(a))
+    throw OptionError("no output holds fields; write .vtu, .vtk, .msh, .med, .exo, .cgns or .xdmf");
+  const TetMesh before = read_mesh_input(session), now = read_mesh_file_of(session, a.bodies[1]).mesh;
+  if (before.order() > 1)
+    throw InputError(fmt::format("{}: is of order {}, and fields are of linear elements (octafront convert --order 1)",
+                                 a.input.string(), before.order()));
+  const std::vector<MeshField> fields = fields_to_carry(session, before);
+  if (fields.empty())
+    throw InputError(fmt::format("{}: has no field that can be carried: at points, or of tetrahedra, one value each",
+                                 a.input.string()));
+  const std::vector<MeshField> made = carried_fields(session, fields, before, now, OutsideNodes::kNearest);
+  write_mesh_targets(session, now, made);
+  for (const std::filesystem::path& file : a.meshes) session.say(fmt::format("written: {}\n", file.string()));
+}
+
+}  // namespace octafront::cli

@@ -1,0 +1,216 @@
+#include <octafront/adapt.h>
+#include <octafront/error.h>
+#include <octafront/improve_existing.h>
+#include <octafront/move.h>
+#include <octafront/quality.h>
+#include <octafront/second_order.h>
+#include <octafront/validity.h>
+
+#include "base/core/parallel.h"
+#include "base/core/thread_limit.h"
+#include "base/core/wording.h"
+#include "base/geometry/measures.h"
+#include "base/geometry/predicates.h"
+#include "base/geometry/self_intersection.h"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <optional>
+#include <utility>
+
+#include <fmt/core.h>
+
+namespace octafront {
+namespace {
+
+/// Steps keep elements above this part of the quality at which they are mended.
+constexpr double kQualityOfSteps = 0.5;
+/// A step that is shorter than this part of the motion gets nowhere.
+constexpr double kShortestStep = 1e-4;
+/// How exactly the part of the motion is found at which the body touches itself.
+constexpr double kContactFound = 1e-3;
+/// How often contact is looked for on the way of one step at most.
+constexpr double kMostLooks = 200;
+
+class Mover {
+ public:
+  Mover(const TetMesh& mesh, std::span<const Vec3> displacement, std::span<const MeshField> fields,
+        const Options& options, const RunContext& context)
+      : options_(options), context_(context), left_(displacement.begin(), displacement.end()) {
+    made_.mesh = mesh, made_.fields.assign(fields.begin(), fields.end());
+    make_linear(made_.mesh);
+    left_.resize(made_.mesh.points.size());
+    for (const Metric& m : metrics::of_edges(made_.mesh)) lengths_.push_back(1 / std::sqrt(m.xx));
+    // Improvement that may turn a whole mesh over is for the end; here poor places are enough.
+    options_.improve.level = ImproveOptions::Level::kFast;
+  }
+
+  MovedMesh move() {
+    while (done_ < 1) {
+      context_.check();
+      context_.report("move", done_);
+      take_step();
+      mend();
+    }
+    return std::move(made_);
+  }
+
+ private:
+  /// With part `r` of what is left.
+  std::vector<Vec3> points_after(double r) const {
+    std::vector<Vec3> points = made_.mesh.points;
+    for (std::size_t v = 0; v < points.size(); ++v) points[v] += r * left_[v];
+    return points;
+  }
+
+  /// The least beta; negative where an element is not positive by exact sign.
+  double poorest(const std::vector<Vec3>& p) const {
+    const auto bad = parallel_find(made_.mesh.tets.size(), [&](std::size_t t) {
+      const auto& [a, b, c, d] = made_.mesh.tets[t];
+      return orient3d(p[a], p[b], p[c], p[d]) <= 0;
+    });
+    if (bad < made_.mesh.tets.size()) return -1;
+    double least = 1;
+    for (const auto& [a, b, c, d] : made_.mesh.tets) least = std::min(least, tet_radius_ratio(p[a], p[b], p[c], p[d]));
+    return least;
+  }
+
+  /// A place where the boundary crosses or touches itself; none: it does not.
+  std::optional<Vec3> contact(const std::vector<Vec3>& points) const {
+    const auto pairs = self_intersections(points, made_.mesh.boundary, 1, context_);
+    if (pairs.empty()) return std::nullopt;
+    const auto& [a, b, c] = made_.mesh.boundary[pairs.front()[0]];
+    return centroid(points[a], points[b], points[c]);
+  }
+
+  double quality_to_keep() const {
+    return std::min(kQualityOfSteps * options_.move.least_quality, kQualityOfSteps * poorest(made_.mesh.points));
+  }
+
+  void take_step() {
+    const double wanted = quality_to_keep();
+    double part = 1;
+    while (poorest(points_after(part)) < wanted) {
+      part /= 2;
+      if (part * (1 - done_) < kShortestStep) refuse_to_follow();
+    }
+    look_for_contact(part);
+    made_.mesh.points = points_after(part);
+    for (Vec3& w : left_) w = (1 - part) * w;
+    done_ = part == 1 ? 1 : done_ + part * (1 - done_);
+  }
+
+  [[noreturn]] void refuse_to_follow() const {
+    throw MeshingError(fmt::format(
+        "elements cannot follow the motion beyond {:.2f} % of it, though they are mended: it folds the body, or is "
+        "not smooth at the length of elements",
+        100 * done_));
+  }
+
+  /// On the way, too, each time that something went by the length of an edge against the rest: nothing as thick as an
+  /// element passes through another.
+  void look_for_contact(double part) const {
+    const auto looks =
+        static_cast<int>(std::clamp(std::ceil(part * farthest_way() / shortest_length()), 1.0, kMostLooks));
+    for (int i = 1; i <= looks; ++i) {
+      context_.check();
+      // Where elements are turned over on the way (points go straight, also around half a turn) their boundary says
+      // nothing; at the end of the step none is.
+      const std::vector<Vec3> points = points_after(part * i / looks);
+      if (poorest(points) >= 0 && contact(points)) refuse_contact(part * (i - 1) / looks, part * i / looks);
+    }
+  }
+
+  /// Of what is left, against the mean.
+  double farthest_way() const {
+    Vec3 mean;
+    for (const Vec3& w : left_) mean += w / static_cast<double>(left_.size());
+    double farthest = 0;
+    for (const Vec3& w : left_) farthest = std::max(farthest, distance(w, mean));
+    return farthest;
+  }
+  double shortest_length() const { return *std::min_element(lengths_.begin(), lengths_.end()); }
+
+  /// The motion up to `free` is possible, that to `part` is not.
+  [[noreturn]] void refuse_contact(double free, double part) const {
+    Vec3 at = *contact(points_after(part));
+    while ((part - free) * (1 - done_) > kContactFound) {
+      const double middle = 0.5 * (free + part);
+      const std::optional<Vec3> place = contact(points_after(middle));
+      if (place) at = *place;
+      (place ? part : free) = middle;
+    }
+    throw MeshingError(fmt::format("the body touches itself at {}: {:.1f} % of the motion is possible", at_point(at),
+                                   100 * (done_ + free * (1 - done_))));
+  }
+
+  void mend() {
+    const char* change = "moved";
+    if (poorest(made_.mesh.points) < options_.move.least_quality) {
+      change = "improved";
+      Improved better = improve_existing(made_.mesh, options_, nullptr, context_);
+      take(std::move(better.mesh), nullptr);
+      if (poorest(made_.mesh.points) < options_.move.least_quality) change = "adapted", adapt();
+    }
+    const QualitySummary quality = summarize_quality(made_.mesh);
+    MoveStep step{done_, change, made_.mesh.tets.size(), quality.beta_min, quality.beta_mean, 0};
+    for (const auto& [a, b, c, d] : made_.mesh.tets) {
+      const auto& p = made_.mesh.points;
+      step.volume += signed_volume(p[a], p[b], p[c], p[d]);
+    }
+    made_.history.push_back(std::move(step));
+  }
+
+  void adapt() {
+    MetricMesh wanted{made_.mesh.points, made_.mesh.tets, {}, {}, "the lengths that the mesh had"};
+    for (const double h : lengths_) wanted.metrics.push_back(Metric::of_size(h));
+    AdaptedMesh adapted = adapt_to_metric(made_.mesh, wanted, options_, context_);
+    const KnownItems same{adapted.old_of_new, adapted.old_tet_of_new};
+    take(std::move(adapted.mesh), &same);
+  }
+
+  /// All that is known goes to another mesh of the body as it is now.
+  void take(TetMesh now, const KnownItems* same) {
+    std::vector<MeshField> all = made_.fields;
+    MeshField left{"", false, 3, {}}, lengths{"", false, 1, lengths_};
+    for (const Vec3& w : left_) left.values.insert(left.values.end(), {w.x, w.y, w.z});
+    all.push_back(std::move(left)), all.push_back(std::move(lengths));
+    all = carry_fields(all, made_.mesh, now, options_.carry, context_, OutsideNodes::kNearest, same).fields;
+    lengths_ = std::move(all.back().values), all.pop_back();
+    left_.resize(now.points.size());
+    for (std::size_t v = 0; v < left_.size(); ++v)
+      left_[v] = {all.back().values[3 * v], all.back().values[3 * v + 1], all.back().values[3 * v + 2]};
+    all.pop_back();
+    made_.fields = std::move(all), made_.mesh = std::move(now);
+  }
+
+  Options options_;
+  const RunContext& context_;
+  MovedMesh made_;
+  std::vector<Vec3> left_;       ///< of the displacement of each point
+  std::vector<double> lengths_;  ///< wanted at each point
+  double done_ = 0;
+};
+
+void require_movable(const TetMesh& mesh, std::span<const Vec3> displacement, const RunContext& context) {
+  if (displacement.size() != mesh.points.size())
+    throw InputError(
+        fmt::format("there are {} displacements, and the mesh has {} points", displacement.size(), mesh.points.size()));
+  for (std::size_t v = 0; v < displacement.size(); ++v)
+    if (!is_finite(displacement[v])) throw InputError(fmt::format("the displacement of point {} is not finite", v));
+  if (const auto defect = first_defect(mesh, context)) throw InputError("not a valid mesh: " + *defect);
+  if (!mesh.wide_cells.empty() || !mesh.periods.empty() || !mesh.split_faces.empty())
+    throw InputError("a mesh with wedges, pyramids, periodic or split faces cannot be moved");
+}
+
+}  // namespace
+
+MovedMesh move_mesh(const TetMesh& mesh, std::span<const Vec3> displacement, std::span<const MeshField> fields,
+                    const Options& options, const RunContext& context) {
+  const ThreadLimit limit(context.threads);
+  require_movable(mesh, displacement, context);
+  return Mover(mesh, displacement, fields, options, context).move();
+}
+
+}  // namespace octafront

@@ -1,0 +1,122 @@
+#include <octafront/error.h>
+#include <octafront/generate.h>
+#include <octafront/run_context.h>
+#include <octafront/second_order.h>
+#include <octafront/validity.h>
+
+#include "base/geometry/tet_lattice.h"
+#include "base/mesh/quadratic_nodes.h"
+#include "improve/curved/curved.h"
+#include "support/named_surfaces.h"
+#include "support/rich_mesh.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <numbers>
+#include <set>
+
+#include <gtest/gtest.h>
+
+namespace octafront {
+namespace {
+
+using testing::cube;
+using testing::icosphere;
+using testing::rich_mesh;
+
+TetMesh ball(double size, int order, int levels = 4) {
+  Options options;
+  options.size.size = size;
+  options.order = order;
+  return generate(icosphere(levels), options).mesh;
+}
+
+/// Farthest node of the faces of the boundary from the unit sphere.
+double farthest_high_node(const TetMesh& mesh) {
+  std::set<Triangle> outside;
+  for (Triangle t : mesh.boundary) {
+    std::ranges::sort(t);
+    outside.insert(t);
+  }
+  double most = 0;
+  const TetLattice& lattice = tet_lattice(mesh.order());
+  std::array<Vec3, 35> room;
+  for (TetIndex t = 0; t < mesh.tets.size(); ++t) {
+    const std::span<const Vec3> nodes = nodes_of_tet(mesh, t, room);
+    for (std::size_t i = 0; i < 4; ++i) {
+      Triangle face;
+      for (std::size_t k = 0; k < 3; ++k) face[k] = mesh.tets[t][static_cast<std::size_t>(kTetFaces[i][k])];
+      std::ranges::sort(face);
+      if (!outside.contains(face)) continue;
+      for (std::size_t n = 0; n < nodes.size(); ++n)
+        if (lattice.weights(n)[i] == 0) most = std::max(most, std::abs(length(nodes[n]) - 1));
+    }
+  }
+  return most;
+}
+
+TEST(HighOrder, BallsAreProvenAndTrue) {
+  for (const int order : {3, 4}) {
+    const TetMesh mesh = ball(0.5, order);
+    EXPECT_EQ(mesh.order(), order);
+    EXPECT_EQ(first_defect(mesh), std::nullopt);
+    EXPECT_EQ(check_jacobians(mesh).invalid, 0u);
+    EXPECT_GT(check_jacobians(mesh).least_scaled_jacobian, 0.1);
+    EXPECT_LT(farthest_high_node(mesh), 2e-5) << order;
+    EXPECT_NEAR(curved_volume(mesh) / (4 * std::numbers::pi / 3), 1, order == 3 ? 2e-4 : 4e-5) << order;
+  }
+}
+
+TEST(HighOrder, ElementsShareTheNodesOfTheirEdgesAndFaces) {
+  for (const int order : {3, 4}) {
+    TetMesh mesh = ball(0.6, 1);
+    const std::size_t corners = mesh.points.size();
+    make_curved(mesh, order);
+    // Euler: of a ball's mesh corners - edges + faces - tets is 1.
+    const std::size_t faces = (4 * mesh.tets.size() + mesh.boundary.size()) / 2;
+    const std::size_t edges = corners + faces - mesh.tets.size() - 1;
+    EXPECT_EQ(mesh.points.size(), corners + edges * nodes_in_edge(order) + faces * nodes_in_face(order) +
+                                      mesh.tets.size() * nodes_in_tet(order));
+    EXPECT_EQ(first_defect(mesh), std::nullopt);
+    const JacobianSummary found = check_jacobians(mesh);
+    EXPECT_EQ(found.invalid, 0u);
+    EXPECT_NEAR(found.least_scaled_jacobian, 1, 1e-9);
+    TetMesh again = mesh;
+    make_linear(again);
+    EXPECT_EQ(again.points.size(), corners);
+    EXPECT_EQ(again.order(), 1);
+  }
+}
+
+TEST(HighOrder, ABallOfFewElementsIsEased) {
+  TetMesh mesh = ball(1.2, 1);
+  const SurfaceMesh surface = icosphere(4);
+  const SecondOrderSummary made = make_curved(mesh, 4, &surface);
+  EXPECT_EQ(check_jacobians(mesh).invalid, 0u);
+  EXPECT_EQ(made.edges, made.curved + made.eased + made.straight);
+  EXPECT_GT(made.curved, 0u);
+}
+
+TEST(HighOrder, WhatIsNotForItIsRefused) {
+  TetMesh mesh = ball(0.8, 1);
+  EXPECT_THROW(make_curved(mesh, 5), OptionError);
+  make_curved(mesh, 3);
+  EXPECT_THROW(make_curved(mesh, 3), InputError);
+  Options options;
+  options.order = 3;
+  options.layers.count = 2;
+  EXPECT_THROW(generate(icosphere(3), options), OptionError);
+}
+
+TEST(HighOrder, AMovedNodeIsFound) {
+  TetMesh mesh = ball(0.6, 3);
+  const VertexIndex node = mesh.high_nodes[7 * mesh.high_nodes_per_tet()];
+  mesh.points[node] += Vec3{3, 0, 0};
+  const JacobianSummary found = check_jacobians(mesh);
+  EXPECT_GT(found.invalid, 0u);
+  EXPECT_TRUE(first_defect(mesh).has_value());
+}
+
+}  // namespace
+}  // namespace octafront
