@@ -11,7 +11,7 @@ namespace {
 /// Triangles this near to a place, in diagonals of the model, meet there: at a vertex or an edge, up to rounding.
 constexpr double kTouching = 1e-12;
 /// Rays start this part of the way to the centroid inside their triangle: along an edge they might pass by all others.
-constexpr double kInside = 1e-6;
+constexpr double kPartInside = 1e-6;
 /// What lies across faces away from the place: the cosine between its normal and the way there is at least this.
 constexpr double kFacing = 0.9;
 
@@ -29,7 +29,7 @@ double Leeway::at(Vec3 p, double allowed) const {
   tree_.for_each_box_near({home.point - around, home.point + around}, [&](std::uint32_t, const TriangleCorners& t) {
     const Vec3 nearest = closest_point_on_triangle(home.point, t[0], t[1], t[2]);
     if (squared_distance(home.point, nearest) > touching * touching) return true;
-    const Vec3 inside = home.point + (centroid(t[0], t[1], t[2]) - home.point) * kInside;
+    const Vec3 inside = home.point + (centroid(t[0], t[1], t[2]) - home.point) * kPartInside;
     most = way_through(home.point, inside, -unit_normal(t[0], t[1], t[2]), most);
     return true;
   });
