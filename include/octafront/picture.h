@@ -58,7 +58,8 @@ struct Picture {
 };
 
 /// A picture of a mesh: its boundary, or with a cut what is behind the plane. Elements of second order are drawn as
-/// they bend, those of a higher order by their corners. The same pixels on every processor and for every number of threads.
+/// they bend, those of a higher order by their corners. The same pixels on every processor and for every number of
+/// threads.
 ///
 /// Quality is the radius ratio beta from 0 (dark red) to 1 (light blue) whatever the mesh: the lightness rises all the
 /// way, also for colour-blind eyes.
