@@ -3,6 +3,7 @@
 #include "cad/model/stream.h"
 
 #include <Message_ProgressRange.hxx>
+#include <TopoDS_Shape.hxx>
 #include <string>
 #include <vector>
 
