@@ -108,8 +108,8 @@ std::string quoted(const std::string& text) {
 /// Size and measure of each part: volume, or length of the vector area, unsigned face by face.
 std::string expected(const TetMesh& mesh) {
   const io::MeshParts parts(mesh);
-  std::array<VertexIndex, 10> tet;
-  std::array<VertexIndex, 6> face;
+  io::CellRoom tet;
+  io::FaceRoom face;
   double all = 0;
   for (std::size_t t = 0; t < parts.tets(); ++t) all += volume(parts.tet_nodes(t, tet), mesh.points);
   std::string out = fmt::format("{{\"nodes\": {}, \"tets\": {}, \"boundary\": {}, \"volume\": {:.17g}, \"parts\": [\n",
@@ -138,8 +138,8 @@ std::string expected_mixed(const TetMesh& mesh) {
   const io::WithoutDiagonals without = io::without_diagonals(mesh);
   const io::MeshParts parts(mesh);
   const io::MixedCells cells(parts);
-  std::array<VertexIndex, 10> tet;
-  std::array<VertexIndex, 6> face;
+  io::CellRoom tet;
+  io::FaceRoom face;
   const auto count = [&](io::MixedCells::Kind kind) { return cells.end(kind) - cells.begin(kind); };
   std::string out = fmt::format(
       "{{\"nodes\": {}, \"tetra\": {}, \"pyramid\": {}, \"wedge\": {}, \"triangle\": {}, \"quad\": {}, \"parts\": [\n",
