@@ -20,7 +20,7 @@ using Map = std::function<Vec3(Vec3)>;
 
 const std::array<Vec3, 4> kUnitCorners{Vec3{0, 0, 0}, Vec3{1, 0, 0}, Vec3{0, 1, 0}, Vec3{0, 0, 1}};
 
-Vec3 place_of(int order, std::size_t node) {
+Vec3 place_of_node(int order, std::size_t node) {
   const TetLattice::Weights& w = tet_lattice(order).weights(node);
   return Vec3{1.0 * w[1], 1.0 * w[2], 1.0 * w[3]} / order;
 }
@@ -28,7 +28,7 @@ Vec3 place_of(int order, std::size_t node) {
 /// The nodes of the unit tetrahedron where this map has them.
 std::vector<Vec3> nodes_by(int order, const Map& map) {
   std::vector<Vec3> nodes;
-  for (std::size_t n = 0; n < tet_lattice(order).size(); ++n) nodes.push_back(map(place_of(order, n)));
+  for (std::size_t n = 0; n < tet_lattice(order).size(); ++n) nodes.push_back(map(place_of_node(order, n)));
   return nodes;
 }
 
@@ -81,7 +81,7 @@ TEST(CurvedTet, IsThatOfSecondOrder) {
   for (int i = 0; i < 100; ++i) {
     QuadraticTet nodes;
     for (std::size_t n = 0; n < 10; ++n)
-      nodes[n] = place_of(2, n) + 0.3 * Vec3{random.unit() - 0.5, random.unit() - 0.5, random.unit() - 0.5};
+      nodes[n] = place_of_node(2, n) + 0.3 * Vec3{random.unit() - 0.5, random.unit() - 0.5, random.unit() - 0.5};
     std::vector<double> ours = jacobian_coefficients(2, nodes);
     const auto theirs = jacobian_coefficients(nodes);
     std::vector<double> sorted(theirs.begin(), theirs.end());

@@ -129,7 +129,7 @@ std::set<std::uint64_t> ghosts_of(const MeshParts& parts, const io::Division& di
 
 /// Nodes of a cell, in numbers of the whole.
 std::vector<std::uint64_t> nodes_of(const io::MixedCells& cells, std::size_t cell, const Piece* piece) {
-  std::array<VertexIndex, 15> room;
+  io::CellRoom room;
   std::vector<std::uint64_t> nodes;
   for (const VertexIndex v : cells.nodes(cell, room)) nodes.push_back(piece == nullptr ? v : piece->point_ids[v]);
   return nodes;
