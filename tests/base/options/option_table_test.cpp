@@ -112,7 +112,7 @@ TEST(OptionTable, RangesAreKeptAndSaid) {
   EXPECT_EQ(refuses("relaxation", 1), "");
   EXPECT_EQ(refuses("feature_angle", 180), "`feature_angle` is 180, but must be above 0 and below 180");
   EXPECT_EQ(refuses("ideal_distance", .2), "`ideal_distance` is 0.2, but must be from 0.3 to 1.5");
-  EXPECT_EQ(refuses("order", 5), "`order` is 5, but must be 1, 2, 3 or 4");
+  EXPECT_EQ(refuses("order", 5), "`order` is 5, but must be 1 or 2 or 3 or 4");
   EXPECT_EQ(refuses("layers", 101), "`count` is 101, but must be from 0 to 100");
   EXPECT_NE(refuses("size", std::numeric_limits<double>::quiet_NaN()), "");
   EXPECT_NE(refuses("size", std::numeric_limits<double>::infinity()), "");

@@ -92,16 +92,34 @@ TEST(ReadMsh, VersionTwoListsElementsOnceForEachGroup) {
   EXPECT_EQ(first_defect(mesh), std::nullopt);
 }
 
-TEST(ReadMsh, ElementsOfHighOrderAreTakenAsLinear) {
+/// One tetrahedron of Gmsh's type, all nodes but its corners beside each other.
+MeshFile one_element(int type, int count) {
   std::string nodes, corners;
   int n = 0;
   for (const Vec3& p : {Vec3{0, 0, 0}, Vec3{3, 0, 0}, Vec3{0, 3, 0}, Vec3{0, 0, 3}})
     nodes += fmt::format("{} {} {} {}\n", ++n, p.x, p.y, p.z);
-  while (n < 20) nodes += fmt::format("{0} {0} .1 .1\n", ++n);
-  for (int v = 1; v <= 20; ++v) corners += fmt::format(" {}", v);
-  const MeshFile file =
-      io::read_mesh_bytes({"x", "$MeshFormat\n2.2 0 8\n$EndMeshFormat\n$Nodes\n20\n" + nodes +
-                                    "$EndNodes\n$Elements\n1\n1 29 2 1 1" + corners + "\n$EndElements\n"});
+  while (n < count) nodes += fmt::format("{0} {0} .1 .1\n", ++n);
+  for (int v = 1; v <= count; ++v) corners += fmt::format(" {}", v);
+  return io::read_mesh_bytes(
+      {"x", fmt::format("$MeshFormat\n2.2 0 8\n$EndMeshFormat\n$Nodes\n{}\n{}$EndNodes\n$Elements\n1\n1 {} 2 1 1{}\n"
+                        "$EndElements\n",
+                        count, nodes, type, corners)});
+}
+
+TEST(ReadMsh, ElementsOfOrder3And4KeepTheirNodes) {
+  for (const auto& [type, count, order] : {std::array{29, 20, 3}, std::array{30, 35, 4}}) {
+    const MeshFile file = one_element(type, count);
+    EXPECT_EQ(file.mesh.order(), order);
+    EXPECT_EQ(file.mesh.points.size(), static_cast<std::size_t>(count));
+    // Of the edge from corner 0 to corner 1; Gmsh's fourth edge leads from corner 3 to corner 0, ours the other way.
+    EXPECT_EQ(file.mesh.points[file.mesh.high_nodes[0]].x, 5);
+    const std::size_t inside = static_cast<std::size_t>(order) - 1;
+    EXPECT_EQ(file.mesh.points[file.mesh.high_nodes[2 * inside]].x, 4 + 4 * static_cast<double>(inside));
+  }
+}
+
+TEST(ReadMsh, ElementsOfHigherOrderAreTakenAsLinear) {
+  const MeshFile file = one_element(31, 56);
   EXPECT_EQ(file.mesh.points.size(), 4U);
   EXPECT_EQ(volume_of(file.mesh), 4.5);
   EXPECT_TRUE(testing::says(file.notes, "1 elements of order 3"));
