@@ -85,7 +85,7 @@ class Conversation(WithServer):
                     continue
                 jsonschema.Draft202012Validator.check_schema(schema)
         mesh = next(t for t in tools if t["name"] == "mesh")["inputSchema"]["properties"]["options"]
-        self.assertEqual(mesh["properties"]["order"]["enum"], ["1", "2", 1, 2])
+        self.assertEqual(mesh["properties"]["order"]["enum"], ["1", "2", "3", "4", 1, 2, 3, 4])
         self.assertIn("max-deviation", mesh["description"])
         self.assertLess(len(json.dumps(tools)), 100_000)
 
