@@ -513,7 +513,7 @@ class CommandLine(unittest.TestCase):
         files, report = [self.dir / f"torus.{ending}" for ending in ("msh", "inp", "bdf", "vtu", "unv")], self.dir / "report.json"
         outputs = [word for file in files for word in ("-o", file)]
         done = self.run_cli("mesh", SAMPLES / "torus_knot.ply", *outputs, "--order", 2, "--json", report, "--improve", "fast")
-        self.assertIn("second order, every element proven valid", done.stdout)
+        self.assertIn("curved, every element proven valid", done.stdout)
         r = json.loads(report.read_text())["second_order"]
         self.assertGreater(r["curved_edges"], 1000)
         self.assertEqual(r["edges"], r["curved_edges"] + r["eased_edges"] + r["straight_edges"])

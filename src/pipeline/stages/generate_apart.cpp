@@ -240,7 +240,7 @@ void add(SecondOrderSummary& all, const SecondOrderSummary& more, TetIndex first
     all.least_tet = first_tet + more.least_tet;
   }
   all.edges += more.edges, all.curved += more.curved, all.eased += more.eased, all.straight += more.straight;
-  all.moved += more.moved, all.held += more.held;
+  all.moved += more.moved, all.held += more.held, all.eased_faces += more.eased_faces;
   all.largest_bend = std::max(all.largest_bend, more.largest_bend);
 }
 

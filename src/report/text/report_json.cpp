@@ -117,6 +117,7 @@ Json json_of(const SecondOrderSummary& s) {
   return {{"edges", s.edges},
           {"curved_edges", s.curved},
           {"eased_edges", s.eased},
+          {"eased_faces", s.eased_faces},
           {"straight_edges", s.straight},
           {"corners_moved", s.moved},
           {"corners_held", s.held},

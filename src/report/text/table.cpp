@@ -112,11 +112,11 @@ std::string layer_lines(const std::vector<LayerSummary>& walls) {
 }
 
 std::string second_order_lines(const SecondOrderSummary& s) {
-  std::string out =
-      fmt::format("second order, every element proven valid\n  edges {}: {} curved, {} eased, {} straight\n",
-                  grouped(s.edges), grouped(s.curved), grouped(s.eased), grouped(s.straight));
+  std::string out = fmt::format("curved, every element proven valid\n  edges {}: {} curved, {} eased, {} straight\n",
+                                grouped(s.edges), grouped(s.curved), grouped(s.eased), grouped(s.straight));
   if (s.moved + s.held > 0)
     out += fmt::format("  corners moved to the smooth surface: {}; held back: {}\n", grouped(s.moved), grouped(s.held));
+  if (s.eased_faces > 0) out += fmt::format("  faces eased: {}\n", grouped(s.eased_faces));
   return out + fmt::format("  least scaled Jacobian {:.4f} (tet {}), largest bend {:.3f} of an edge\n",
                            s.least_scaled_jacobian, s.least_tet, s.largest_bend);
 }
