@@ -369,7 +369,7 @@ class CommandLine(unittest.TestCase):
             self.run_cli("convert", files[1], "-o", files[2], "--ascii", "--format", "msh22")
             self.run_cli("convert", files[0], "-o", files[3], "--ascii")
             self.assertIn(f" {29 if order == 3 else 30} ", files[2].read_text())
-            told, volumes = set(), []
+            told, volumes, places = set(), [], []
             for file in files:
                 said = self.run_cli("check", file).stdout
                 self.assertIn(f"tetrahedra of order {order}", said)
@@ -378,8 +378,10 @@ class CommandLine(unittest.TestCase):
                 found = json.loads(report.read_text())
                 self.assertEqual(found["order"], order)
                 volumes.append(found["volume"])
+                places.append((sorted(found["places"]["patches"]), len(found["places"]["curves"])))
             self.assertEqual(len(told), 1, told)
             self.assertLess(max(volumes) / min(volumes), 1 + 1e-9)
+            self.assertEqual(places, places[:1] * len(files))
             self.assertIn("holds no elements of order", self.run_cli("convert", files[0], "-o", self.dir / "linear.inp").stdout)
             back = self.run_cli("convert", files[0], "-o", self.dir / "back.vtu", "--order", "1").stdout
             self.assertIn("written", back)

@@ -123,6 +123,8 @@ void VtkCellTaker::take(std::uint64_t cell, std::int64_t type, std::span<const s
     kWedge15 = 26,
     kPyramid13 = 27,
     kHexahedron27 = 29,
+    kLagrangeLine = 68,
+    kLagrangeTriangle = 69,
     kLagrangeTetra = 71
   };
   const std::size_t count = nodes.size();
@@ -170,15 +172,17 @@ void VtkCellTaker::take(std::uint64_t cell, std::int64_t type, std::span<const s
     raw_.add_face(std::span(all).first(count), at_or(data_.patch, cell, 1));
     end = raw_.triangles.size();
     take_face_data(cell);
-  } else if ((type == kTriangle && count == 3) || (type == kTriangle6 && count == 6)) {
+  } else if ((type == kTriangle && count == 3) || (type == kTriangle6 && count == 6) ||
+             (type == kLagrangeTriangle && (count == 10 || count == 15))) {
     take_nodes();
     kind = Kind::kFaces;
     member = raw_.triangles.size();
     raw_.triangles.push_back({all[0], all[1], all[2]});
     raw_.triangle_ref.push_back(at_or(data_.patch, cell, 1));
     take_face_data(cell);
-  } else if (((type == kLine && count == 2) || (type == kLine3 && count == 3)) && !data_.curve.empty() &&
-             data_.curve[cell] > 0) {
+  } else if (((type == kLine && count == 2) || (type == kLine3 && count == 3) ||
+              (type == kLagrangeLine && (count == 4 || count == 5))) &&
+             !data_.curve.empty() && data_.curve[cell] > 0) {
     // Lines that nobody calls a curve may be anything, such as the bars of a frame.
     take_nodes();
     kind = Kind::kEdges;
