@@ -9,6 +9,7 @@ import math
 import pathlib
 import tempfile
 
+from bench.models.cube import CUBE
 from bench.pages import tables
 from bench.pages.origin import written_by
 from bench.process import run_measured
@@ -17,29 +18,6 @@ MODELS = ["bunny00.off", "armadillo.off", "couplingdown.off", "fandisk.off", "fe
 HEAD_IMAGE = "samples/head_labels.nii.gz"
 SMOOTH = "sin(6.3*(x-({x}))/{d})*cos(5*(y-({y}))/{d})+(z-({z}))/{d}"
 STEP = "max(0,min(1,1e6*((x-({x}))/{d}+(y-({y}))/{d})))"
-CUBE = """OFF
-8 12 0
-0 0 0
-1 0 0
-1 1 0
-0 1 0
-0 0 1
-1 0 1
-1 1 1
-0 1 1
-3 0 2 1
-3 0 3 2
-3 4 5 6
-3 4 6 7
-3 0 1 5
-3 0 5 4
-3 1 2 6
-3 1 6 5
-3 2 3 7
-3 2 7 6
-3 3 0 4
-3 3 4 7
-"""
 PAIRS = ["body", "pair", "old", "new", "regions", "volume changed", "uncovered", "lost", "integral error", "beyond the range", "mean error", "mean error, linear", "CPU s", "CPU s, linear"]
 ORDERS = ["old size", "elements", "of elements", "of elements, linear", "at points"]
 COSTS = ["what", "old", "new", "both have", "CPU s", "of them reading and writing", "memory MB"]

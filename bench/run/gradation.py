@@ -9,35 +9,13 @@ import statistics
 import tempfile
 
 from bench.ours import cpu_seconds
+from bench.models.cube import CUBE
 from bench.pages import tables
 from bench.pages.origin import written_by
 from bench.run.status import mesh_and_judge
 
 MODELS = ["bunny00.off", "armadillo.off", "couplingdown.off"]
 GRADATIONS = [0.05, 0.08, 0.12, 0.2, 0.3, 0.5]
-CUBE = """OFF
-8 12 0
-0 0 0
-1 0 0
-1 1 0
-0 1 0
-0 0 1
-1 0 1
-1 1 1
-0 1 1
-3 0 2 1
-3 0 3 2
-3 4 5 6
-3 4 6 7
-3 0 1 5
-3 0 5 4
-3 1 2 6
-3 1 6 5
-3 2 3 7
-3 2 7 6
-3 3 0 4
-3 3 4 7
-"""
 HEAD = ["what", "gradation", "mean β", "above .8, %", "least β", "angles °", "elements", "filled, k/CPU s", "in all, k/CPU s", "Hausdorff %, mean"]
 
 

@@ -1,6 +1,6 @@
 #pragma once
 
-// improve/curved: elements of second order. Takes a valid linear mesh and the surface that its boundary stands for,
+// improve/curved: elements of order 2, 3 and 4. Takes a valid linear mesh and the surface that its boundary stands for,
 // leaves mid-side nodes: those of the boundary on the smooth surface, as far as every element is proven valid. The
 // public face is octafront/second_order.h.
 
