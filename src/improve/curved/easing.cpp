@@ -16,11 +16,6 @@ namespace {
 
 // Of its volume before, an element keeps this when its corners move.
 constexpr double kLeastVolume = 0.5;
-// The least coefficient of the Jacobian over that of the straight element: positive is valid, a little more is safe in
-// files with fewer digits and kinder to solvers.
-constexpr double kLeastScaled = 0.1;
-// So often a node goes halfway back before it goes back altogether.
-constexpr int kMostHalvings = 8;
 
 /// A node on its way: how often it has gone halfway back.
 struct Way {
@@ -56,18 +51,9 @@ class Easing {
   template <class IsGood, class Choose>
   void settle(const IsGood& is_good, const Choose& choose, const RunContext& context) {
     for (const auto& [v, way] : ways_) mesh_.points[v] = way.place();
-    std::vector<TetIndex> suspects = tets_;
-    while (!suspects.empty()) {
-      context.check();
-      std::vector<char> good(suspects.size());
-      parallel_for(suspects.size(), [&](std::size_t i) { good[i] = is_good(suspects[i]); });
-      std::vector<std::uint32_t> back;
-      for (std::size_t i = 0; i < suspects.size(); ++i)
-        if (!good[i]) choose(ways_left(suspects[i]), back);
-      std::sort(back.begin(), back.end());
-      back.erase(std::unique(back.begin(), back.end()), back.end());
-      suspects = go_back(back);
-    }
+    settle_tets(
+        tets_, is_good, [&](TetIndex t, std::vector<std::uint32_t>& back) { choose(ways_left(t), back); },
+        [&](const std::vector<std::uint32_t>& back) { return go_back(back); }, context);
   }
 
   const Way& way(std::uint32_t i) const { return ways_[i].second; }
@@ -174,7 +160,7 @@ void bend_edges(TetMesh& mesh, const TetEdges& edges, std::span<const EdgeBend> 
         const QuadraticTet nodes = quadratic_nodes(mesh, t);
         const auto coefficients = jacobian_coefficients(nodes);
         const double least = *std::min_element(coefficients.begin(), coefficients.end());
-        return least >= kLeastScaled * six_volumes_of(mesh, t) && has_positive_jacobian(nodes);
+        return least >= kLeastScaledJacobian * six_volumes_of(mesh, t) && has_positive_jacobian(nodes);
       },
       [&](const std::vector<std::uint32_t>& left, std::vector<std::uint32_t>& back) {
         const auto most = std::max_element(left.begin(), left.end(), [&](std::uint32_t i, std::uint32_t k) {

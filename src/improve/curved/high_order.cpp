@@ -6,6 +6,7 @@
 #include "base/geometry/tet_lattice.h"
 #include "base/mesh/face_table.h"
 #include "base/mesh/quadratic_nodes.h"
+#include "improve/curved/easing.h"
 #include "improve/curved/mid_nodes.h"
 #include "improve/curved/node_places.h"
 
@@ -21,9 +22,6 @@ namespace octafront::curved {
 
 namespace {
 
-// As those of second order (easing.cpp).
-constexpr double kLeastScaledOfHigh = 0.1;
-constexpr int kMostHalvingsOfHigh = 8;
 /// An element that seems bad by its coefficients is halved into so many parts.
 constexpr std::size_t kPartsOfBent = 64;
 
@@ -57,7 +55,7 @@ struct Bent {
   double most = 0;
   int halvings = 0;
 
-  double part() const { return halvings < kMostHalvingsOfHigh ? std::ldexp(1, -halvings) : 0; }
+  double part() const { return halvings < kMostHalvings ? std::ldexp(1, -halvings) : 0; }
 };
 
 Vec3 moved_by(const Bent& bent, const std::array<double, 3>& shares) {
@@ -112,18 +110,12 @@ class HighOrder {
   }
 
   void settle(const RunContext& context) {
-    std::vector<TetIndex> suspects = bent_tets_;
-    while (!suspects.empty()) {
-      context.check();
-      std::vector<char> good(suspects.size());
-      parallel_for(suspects.size(), [&](std::size_t i) { good[i] = is_good(suspects[i]); });
-      std::vector<std::uint32_t> back;
-      for (std::size_t i = 0; i < suspects.size(); ++i)
-        if (const std::uint32_t most = good[i] ? kNone : most_bent(suspects[i]); most != kNone) back.push_back(most);
-      std::ranges::sort(back);
-      back.erase(std::unique(back.begin(), back.end()), back.end());
-      suspects = go_back(back);
-    }
+    settle_tets(
+        bent_tets_, [&](TetIndex t) { return is_good(t); },
+        [&](TetIndex t, std::vector<std::uint32_t>& back) {
+          if (const std::uint32_t most = most_bent(t); most != kNone) back.push_back(most);
+        },
+        [&](const std::vector<std::uint32_t>& back) { return go_back(back); }, context);
   }
 
   void count(SecondOrderSummary& summary) const {
@@ -258,9 +250,9 @@ class HighOrder {
   bool is_good(TetIndex t) const {
     std::array<Vec3, 35> room;
     const std::span<const Vec3> nodes = nodes_of_tet(mesh_, t, room);
-    if (least_scaled_jacobian_bound(order_, nodes) > kLeastScaledOfHigh) return true;
+    if (least_scaled_jacobian_bound(order_, nodes) > kLeastScaledJacobian) return true;
     const JacobianRange range = jacobian_range(order_, nodes);
-    const double wanted = kLeastScaledOfHigh * range.straight;
+    const double wanted = kLeastScaledJacobian * range.straight;
     return (range.least >= wanted || least_jacobian(order_, nodes, kPartsOfBent) >= wanted) &&
            validity_of(order_, nodes) == Validity::kValid;
   }
