@@ -44,5 +44,7 @@ browser_packages=(chromium chromium-driver python3-selenium fonts-dejavu-core)
 shell_packages=(groff zsh fish python3-jsonschema)
 # What reads images beside us (tests/images): also of --all.
 image_packages=(python3-nibabel python3-pydicom libgdcm-dev libgdcm-tools libtiff-dev)
+# FreeCAD, and a display that nobody sees, for the workbench of addons/freecad: also of --all.
+addon_packages=(freecad xvfb xauth)
 # Other meshers, which some benchmarks run beside ours.
 peer_packages=(tetgen gmsh netgen)
