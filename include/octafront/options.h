@@ -275,6 +275,11 @@ struct CarryOptions {
 /// How a mesh is moved (octafront/move.h).
 struct MoveOptions {
   double least_quality = 0.2;  ///< beta (3 r / R) below which elements are mended between steps, in (0, 0.6]
+  /// Only the displacements of the boundary count; those inside follow them, harmonic.
+  bool boundary_alone = false;
+  /// Where elements are poor, the walls of the mesh as they have moved become the input of generate(), at the lengths
+  /// that edges had, instead of the mesh being adapted.
+  bool remesh = false;
 };
 
 /// What a mesh must keep: one that does not is not handed out, RequirementError says what it is like. Looked at last,

@@ -413,13 +413,22 @@ std::vector<Row<Options>> carry_rows() {
 }
 
 std::vector<Row<Options>> move_rows() {
+  const auto of = [](std::string_view name, std::string_view help) { return About(name, "Motion", "move", help); };
   return {
       row(
-          About("least_quality", "Motion", "move", "Quality (3 r / R) below which elements are mended between steps")
+          of("least_quality", "Quality (3 r / R) below which elements are mended between steps")
               .takes("BETA")
               .above(0)
               .to(0.6),
           [](auto& o) -> auto& { return o.move.least_quality; }),
+      row(
+          of("boundary_alone", "Only the displacements of the boundary count; those inside follow them, harmonic"),
+          [](auto& o) -> auto& { return o.move.boundary_alone; }),
+      row(
+          of("remesh",
+             "Where elements are poor, the moved walls are meshed anew, at the lengths that edges had, instead of the "
+             "mesh being adapted"),
+          [](auto& o) -> auto& { return o.move.remesh; }),
   };
 }
 

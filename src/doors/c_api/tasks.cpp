@@ -376,6 +376,7 @@ octafront_job* octafront_move(const octafront_mesh* mesh, const double* displace
         MovedMesh moved =
             move_mesh(mesh->mesh, by, fields_from(fields, count, mesh->mesh), job.options_of(options), job.context());
         job.report["history"] = Json::parse(to_json(moved.history));
+        job.report["notes"] = moved.notes;
         give(job, std::move(moved.mesh));
         job.mesh->fields = std::move(moved.fields);
       },
