@@ -128,7 +128,7 @@ def plate():
     made.material(STEEL)
     made.fix(made.faces(is_plane_at("X", 0)))
     made.pull(made.faces(is_plane_at("X", 100)), 20000, Vector(1, 0, 0))
-    return made.job(made.faces(is_cylinder(5)), 1.8, 0.7)
+    return made.job(made.faces(is_cylinder(5)), 2.5, 0.5)
 
 
 def pipe():
@@ -184,7 +184,7 @@ def by_octafront(job, size):
 
 
 MESHERS = {"gmsh": by_gmsh, "octafront": by_octafront}
-TRIES, NEAR = 10, .02
+TRIES, NEAR = 10, .03
 
 
 def of_about(job, mesher, count, size):

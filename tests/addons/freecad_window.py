@@ -26,7 +26,7 @@ class Story:
     """Steps, each begun when what the one before started has ended."""
 
     def __init__(self):
-        self.steps = [self.open_panel, self.mesh, self.stop, self.close, self.keep]
+        self.steps = [self.open_panel, self.mesh, self.stop, self.close, self.add_size, self.keep]
         self.timer = QtCore.QTimer()
         self.timer.timeout.connect(self.go_on)
         self.looks = 0
@@ -88,8 +88,18 @@ class Story:
         self.panel.size.setProperty("rawValue", 2.0)
         self.panel.accept()
 
-    def keep(self):
+    def add_size(self):
         assert self.object.CharacteristicLengthMax.Value == 2 and not FreeCADGui.Control.activeDialog()
+        body = self.doc.getObject("Body")
+        FreeCADGui.Selection.clearSelection()
+        FreeCADGui.Selection.addSelection(body, "Face3")
+        FreeCADGui.runCommand("Octafront_Size")
+        region, = self.object.MeshRegionList
+        assert FreeCADGui.Control.activeDialog() and region.References == [(body, ("Face3",))], region.References
+        FreeCADGui.ActiveDocument.resetEdit()
+        assert region in self.object.ViewObject.Proxy.claimChildren()
+
+    def keep(self):
         self.doc.saveAs(str(SCRATCH / "window.FCStd"))
         FreeCAD.closeDocument("window")
         again = FreeCAD.openDocument(str(SCRATCH / "window.FCStd")).getObject("Body_Mesh")
