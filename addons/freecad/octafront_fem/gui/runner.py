@@ -42,7 +42,10 @@ class Runner(QtCore.QObject):
         """Asks the program to end; it is ended if it does not. cancelled() comes then."""
         self.stopped = True
         self.process.terminate()
-        QtCore.QTimer.singleShot(1000 * program.PATIENCE, self.process.kill)
+        patience = QtCore.QTimer(self)  # goes with this object
+        patience.setSingleShot(True)
+        patience.timeout.connect(self.process.kill)
+        patience.start(1000 * program.PATIENCE)
 
     def _hear(self):
         while self.process.canReadLine():
