@@ -10,6 +10,7 @@ from .references import elements_of, kind_of
 # Face6, Face6_(Solid1|Solid2): of a face whose pieces lie at several solids there are several.
 NAMED = re.compile(r"(Face\d+|Solid\d+)(?:$|_\()")
 TYPES = {"Solid": "Volume", "Face": "Face"}
+MOST_COMPARED = 2000  # triangles of a face that FreeCAD looks for: it takes seconds for many, and narrow faces have few
 FILLS_THE_REST = "App::MaterialObjectPython"  # without references it is what all solids are made of that nothing else is
 
 
@@ -64,8 +65,9 @@ def note_on(obj, name, written):
     """What is wrong with the elements of a reference: none, or some that FreeCAD will not find by distances. None: nothing."""
     if not (written.elements(name) if kind_of(name) in TYPES else written.nodes(name)):
         return f"{obj.Label}: {name} has no elements: it is too small for the size that is asked for"
-    if kind_of(name) == "Face":
-        there, by_place = len(written.elements(name)), len(written.femmesh.getFacesByFace(written.part.Shape.getElement(name)))
+    there = len(written.elements(name)) if kind_of(name) == "Face" else 0
+    if 0 < there <= MOST_COMPARED:
+        by_place = len(written.femmesh.getFacesByFace(written.part.Shape.getElement(name)))
         if there != by_place:
             return f"{obj.Label}: {name} has {there} triangles, of which FreeCAD finds {by_place} by distances: smaller elements there make them the same"
     return None
