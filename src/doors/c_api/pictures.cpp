@@ -23,7 +23,9 @@ std::map<std::string, Value> choices_in(const std::vector<std::pair<std::string,
   return {names.begin(), names.end()};
 }
 
-PictureOptions picture_from(const Json& json) {
+PictureOptions picture_from(const std::string& asked) {
+  const Json json = Json::parse(asked, nullptr, false);
+  if (!json.is_object()) throw OptionError("what is asked of a picture is an object in JSON");
   PictureOptions o;
   const auto text = [&](const char* key, const auto& take) {
     with(json, key, [&](const Json& value) { take(value.get<std::string>()); });
@@ -67,7 +69,7 @@ octafront_job* octafront_picture(const octafront_mesh* mesh, const octafront_sur
       [=, text = std::string(json),
        target = file != nullptr ? std::optional<std::string>(file) : std::nullopt](octafront_job& job) {
         if (target) check_text_target(*target);
-        const Picture picture = drawn(mesh, surface, picture_from(Json::parse(text)), job.context());
+        const Picture picture = drawn(mesh, surface, picture_from(text), job.context());
         job.bytes = to_png(picture);
         job.report = {{"width", picture.width}, {"height", picture.height}, {"notes", picture.notes}};
         if (target) write_text(*target, job.bytes);
