@@ -160,12 +160,20 @@ class Mover {
     if (options_.move.boundary_alone) left_ = harmonic_inside(made_.mesh, std::move(left_), context_);
     const double wanted = quality_to_keep();
     double part = 1;
-    while (poorest(points_after(part)) < wanted) {
+    const bool at_once = is_better_than_the_way();
+    while (!at_once && poorest(points_after(part)) < wanted) {
       part /= 2;
       if (part * (1 - done_) < kShortestStep) refuse_to_follow();
     }
     look_for_contact(part);
     go(part);
+  }
+
+  /// Points go straight, also those that are to turn: then the body is worse half way than in the end, which is where
+  /// it is to be mended.
+  bool is_better_than_the_way() const {
+    const double in_the_end = poorest(points_after(1));
+    return in_the_end > 0 && in_the_end > poorest(points_after(0.5));
   }
 
   [[noreturn]] void refuse_to_follow() const {
