@@ -28,7 +28,8 @@ struct MovedMesh {
   TetMesh mesh;
   std::vector<MeshField> fields;  ///< those given, on it
   std::vector<MoveStep> history;
-  std::vector<std::string> notes;  ///< what was lost
+  std::vector<std::string> notes;    ///< what was lost
+  std::vector<FieldReport> carried;  ///< of each field: before the motion, on the mesh that was given, and after it
 };
 
 /// As a JSON array of steps, keys as the members above.

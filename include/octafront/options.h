@@ -270,6 +270,13 @@ struct CarryOptions {
   /// Where the bodies differ, what the integral over a region lacks is spread over it. Else values stay the means over
   /// what is shared, and the integral changes with the volume: for what is no density, such as a modulus.
   bool keep_integrals = true;
+  /// Fields at nodes vary quadratically inside the old elements: by the values at mid-side nodes of a mesh of second
+  /// order, else by second derivatives fitted to what is around. No value leaves the range of the field.
+  bool quadratic_nodes = false;
+  /// Fields of elements, by name, with commas between, that have values at the four integration points of
+  /// quadratic tetrahedra (barycentric coordinates .585, .138, .138, .138; point i is the one near corner i): all
+  /// components of the first point, then those of the second, ...
+  std::string integration_points = {};
 };
 
 /// How a mesh is moved (octafront/move.h).

@@ -409,6 +409,17 @@ std::vector<Row<Options>> carry_rows() {
              "with the volume (a modulus, a temperature)")
               .called("keep_integrals"),
           [](auto& o) -> auto& { return o.carry.keep_integrals; }),
+      row(
+          of("quadratic_nodes",
+             "Fields at nodes vary quadratically inside old elements: by mid-side nodes, or second derivatives fitted "
+             "to what is around"),
+          [](auto& o) -> auto& { return o.carry.quadratic_nodes; }),
+      row(
+          of("integration_points",
+             "Fields of elements, names with commas between, that have values at the four integration points of "
+             "quadratic tetrahedra, point by point")
+              .takes("FIELD"),
+          [](auto& o) -> auto& { return o.carry.integration_points; }),
   };
 }
 

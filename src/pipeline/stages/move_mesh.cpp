@@ -16,6 +16,7 @@
 #include "base/mesh/periodic_nodes.h"
 #include "pipeline/stages/domain_of_mesh.h"
 #include "pipeline/stages/harmonic_inside.h"
+#include "pipeline/stages/stages.h"
 
 #include <algorithm>
 #include <cmath>
@@ -37,6 +38,8 @@ constexpr double kShortestStep = 1e-4;
 constexpr double kContactFound = 1e-3;
 /// How often contact is looked for on the way of one step at most.
 constexpr double kMostLooks = 200;
+/// A body of less than this part of its volume is flat.
+constexpr double kFlat = 1e-6;
 /// Pairs of a periodic mesh may differ by this in what they move by, in parts of the longest way: solvers and files
 /// round.
 constexpr double kSameWay = 1e-5;
@@ -157,12 +160,20 @@ class Mover {
     if (options_.move.boundary_alone) left_ = harmonic_inside(made_.mesh, std::move(left_), context_);
     const double wanted = quality_to_keep();
     double part = 1;
-    while (poorest(points_after(part)) < wanted) {
+    const bool at_once = is_better_than_the_way();
+    while (!at_once && poorest(points_after(part)) < wanted) {
       part /= 2;
       if (part * (1 - done_) < kShortestStep) refuse_to_follow();
     }
     look_for_contact(part);
     go(part);
+  }
+
+  /// Points go straight, also those that are to turn: then the body is worse half way than in the end, which is where
+  /// it is to be mended.
+  bool is_better_than_the_way() const {
+    const double in_the_end = poorest(points_after(1));
+    return in_the_end > 0 && in_the_end > poorest(points_after(0.5));
   }
 
   [[noreturn]] void refuse_to_follow() const {
@@ -318,13 +329,38 @@ void require_movable(const TetMesh& mesh, std::span<const Vec3> displacement, bo
   if (!mesh.split_faces.empty()) throw InputError("a mesh with split faces cannot be moved");
 }
 
+/// What the boundary encloses when all is done.
+double volume_after(const TetMesh& mesh, std::span<const Vec3> displacement) {
+  const VertexIndex first = mesh.boundary.front()[0];
+  const Vec3 origin = mesh.points[first] + displacement[first];
+  double sum = 0;
+  for (const auto& [a, b, c] : mesh.boundary) {
+    const auto at = [&](VertexIndex v) { return mesh.points[v] + displacement[v] - origin; };
+    sum += dot(at(a), cross(at(b), at(c))) / 6;
+  }
+  return sum;
+}
+
+/// No way of mending helps, and trying would take long.
+void refuse_flat(const TetMesh& mesh, std::span<const Vec3> displacement) {
+  const double before = enclosed_volume(boundary_of(mesh)), after = volume_after(mesh, displacement);
+  if (after > kFlat * before) return;
+  throw MeshingError(
+      fmt::format("the motion would press the body flat or turn it inside out: of its volume {:.6g} it leaves {:.3g}",
+                  before, after));
+}
+
 }  // namespace
 
 MovedMesh move_mesh(const TetMesh& mesh, std::span<const Vec3> displacement, std::span<const MeshField> fields,
                     const Options& options, const RunContext& context) {
   const ThreadLimit limit(context.threads);
   require_movable(mesh, displacement, options.move.boundary_alone, context);
-  return Mover(mesh, displacement, fields, options, context).move();
+  refuse_flat(mesh, displacement);
+  MovedMesh made = Mover(mesh, displacement, fields, options, context).move();
+  for (std::size_t f = 0; f < fields.size(); ++f)
+    made.carried.push_back(report_of_field(fields[f], mesh, made.fields[f], made.mesh, options.carry));
+  return made;
 }
 
 }  // namespace octafront
