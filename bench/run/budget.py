@@ -89,8 +89,8 @@ def tables(name, rows, failed):
     refused = collections.defaultdict(list)
     for model, why in failed:
         refused[why].append(model)
-    lines = [*spread(HEAD, rows, HEAD[1:-1]), "", f"Each: {put(name, HEAD, rows)}.", "", "Least angles:", "",
-             *worst(HEAD, rows, "least angle", ["model", "triangles", "made", "least β", "least angle", "CPU s"])]
+    lines = [*spread(HEAD, rows, [c for c in HEAD[1:-1] if c != "before" and any(r[HEAD.index(c)] for r in rows)]), "", f"Each: {put(name, HEAD, rows)}.", "", "Least angles:", "",
+             *worst(HEAD, rows, "least angle", ["model", "triangles", "made", "least β", "least angle", "CPU s"], count=5)]
     return lines + (["", "Not meshed:", "", *(f"- {why}: {', '.join(models)}" for why, models in sorted(refused.items()))] if failed else [])
 
 
@@ -111,7 +111,8 @@ def page(options, rows, failed, command):
         f"Most CPU time: {max(r['cpu'] for r in rows):.1f} s. Most memory: {max(r['memory'] for r in rows) / 1e6:.0f} MB.",
         f"Least angle: {sum(r['angle'] < 5 for r in rows)} models below 5°, {sum(r['angle'] < 15 for r in rows)} below 15°, "
         f"{statistics.median(r['angle'] for r in rows):.1f}° in the median."]
-    lines += beside(rows, "before", "the program before") + beside(rows, "gmsh", "Gmsh with 12 elements a turn")
+    print(*beside(rows, "before", "the program before"), sep="\n")
+    lines += beside(rows, "gmsh", "Gmsh with 12 elements a turn")
     return [*lines, "", *tables(options.page, [cells(r) for r in rows], failed)]
 
 

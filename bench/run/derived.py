@@ -58,7 +58,7 @@ def tables_of(name, made):
     made = sorted(made, key=lambda r: (-r["poor_free"], -r["low_free"] / r["tets"], r["beta"]))
     rows = [[r["model"], f"{r['tets']:,}", f"{r['beta']:.3f}", f"{r['angle']:.1f}", f"{r['poor']:.0f}", f"{r['poor_free']:.0f}", f"{r['low_free']:.0f}",
              f"{r['hausdorff']:.3f}", f"{r['cpu']:.1f}"] for r in made]
-    return ["The worst ten:", "", *worst(HEAD, rows, "of these not forced", HEAD, most=True), "", f"Each: {put('derived-' + name.replace(' ', '-'), HEAD, rows)}.", ""]
+    return ["The worst five:", "", *worst(HEAD, rows, "of these not forced", HEAD, most=True, count=5), "", f"Each: {put('derived-' + name.replace(' ', '-'), HEAD, rows)}.", ""]
 
 
 def main():

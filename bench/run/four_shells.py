@@ -30,9 +30,9 @@ AT = [("brain", 0, 1), ("fluid", 1, 2), ("skin", 3, 4)]  # the sphere around it,
 HEAD = ["from", "sizes", "elements", "in the fluid", "in the skull", "skull, mS/m", "electrodes, mm", "nodes off the spheres, mm",
         *(f"{name}: {what}, %" for name, _, _ in AT for what in ("error", "rms of most", "RDM", "magnitude")), "field in the brain, %",
         "mesh, CPU s", "iterations"]
-SHOWN = ["from", "sizes", "elements", "nodes off the spheres, mm", "brain: error, %", "brain: RDM, %", "brain: magnitude, %", "fluid: error, %", "fluid: RDM, %",
+SHOWN = ["from", "sizes", "elements", "nodes off the spheres, mm", "brain: error, %", "brain: RDM, %", "brain: magnitude, %",
          "fluid: magnitude, %", "skin: error, %", "field in the brain, %"]
-SHOWN_CASES = ["from", "skull, mS/m", "electrodes, mm", "brain: error, %", "fluid: error, %", "skin: error, %", "field in the brain, %"]
+SHOWN_CASES = ["from", "skull, mS/m", "electrodes, mm", "brain: error, %", "skin: error, %", "field in the brain, %"]
 
 
 def source(kind, folder):

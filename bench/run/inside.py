@@ -290,7 +290,7 @@ lines are its segments, points its nodes.
 
 def shown(rows):
     """Rows of cells."""
-    return [*tables.some(HEAD, rows, [c for c in HEAD if c not in ("volume off", "most °")]), "", f"With volumes: {tables.put('inside', HEAD, rows)}."]
+    return [*tables.some(HEAD, rows, [c for c in HEAD if c not in ("volume off", "most °", "elements / CPU s")]), "", f"With volumes: {tables.put('inside', HEAD, rows)}."]
 
 
 def main():

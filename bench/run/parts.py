@@ -29,11 +29,13 @@ def shown(told):
     for name, text in told.items():
         for what, (head, rows) in zip(("divided", "written"), tables.parsed(text)):
             every.append((what, ["model", *head], [[name, *row] for row in rows]))
-        lines += [f"- {name}: {text.splitlines()[0]}"]
+        lines += [] if lines else [f"{name}: {text.splitlines()[0]}."]
     for what in ("divided", "written"):
         head = next(head for kind, head, _ in every if kind == what)
         rows = [row for kind, _, its in every if kind == what for row in its]
-        lines += ["", *tables.table(head, rows), "", f"As a file: {tables.put(f'parts-{what}', head, rows)}."]
+        first = [row for row in rows if row[0] == rows[0][0]]
+        lines += ["", *tables.some(head, first, [c for c in head if c not in ("model", "CPU s" if what == "written" else "")]), "",
+                  f"With another model: {tables.put(f'parts-{what}', head, rows)}."]
     return lines
 
 

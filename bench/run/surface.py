@@ -228,7 +228,7 @@ def page(summary, each, rates, growths, compared):
     lines = ["How many of the models reach each target:", "", *table(SUMMARY, summary), "",
              *spread_by("size", HEAD, each, HEAD[2:8]), "", f"Median, least and most. Each: {put('surface-status', HEAD, each)}.", "",
              f"Speed at {SPEED_TRIANGLES:,} triangles, one thread:", "", *table(SPEED, rates), "",
-             "CPU seconds of size field and surface front by the number of triangles:", "", *table(GROWTH, growths)]
+             f"From {GROWTH[1]} to {GROWTH[-2]} triangles CPU time grows as triangles to the power {', '.join(f'{r[-1]} ({r[0]})' for r in growths)}."]
     if compared:
         lines += ["", f"{len({r[0] for r in compared})} of the models at diagonal / {PEER_DIVISOR} by others too, one thread, judged by the same program (CPU seconds of "
                   "theirs include reading and writing files):", "", *spread_by("remesher", PEER_HEAD, compared, PEER_HEAD[3:]), "",
