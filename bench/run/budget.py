@@ -99,8 +99,7 @@ def page(options, rows, failed, command):
     off = [r for r in rows if abs(r["said"] / r["tets"] - 1) > OVER - 1]
     lines = [
         f"# {options.title}", "",
-        f"{written_by(command)}, one model at a time on one thread; what the budget is: "
-        "`docs/how/sizes-and-surface.md`. *Said* is the prediction once the surface is made, which is what `--dry-run` "
+        f"{written_by(command)}, on one thread; the budget: `docs/how/sizes-and-surface.md`. *Said* is the prediction once the surface is made, which is what `--dry-run` "
         "says; *least β* and *least angle* (dihedral, degrees) are of the worst element, forced by the input or not; "
         "*work* is the triangles of all rounds of the surface front over those of the last.", "",
         f"{len(rows)} models meshed, {len(failed)} not. Above 1.3 times the budget: **{len(over)}**"

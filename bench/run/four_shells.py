@@ -123,8 +123,7 @@ def rows_of(kind, sizes, elements, program, timeout):
 
 
 ABOUT = ("Spheres of 79, 81, 85 and 88 mm: brain, fluid, skull and scalp of .33, 1, .0042 and .33 S/m. 1 A in through an even electrode of 20 mm radius on the skin and out "
-         "through one opposite, on no axis of the voxels. Finite elements of first order; a series of Legendre's polynomials, at the nodes' directions and the "
-         "spheres' radii. *Error*: of the potential, root mean square over the sphere around brain, fluid or skin, beside that of the potential itself. *RDM*: the same when "
+         "through one opposite, on no axis of the voxels. Finite elements of first order beside a series of Legendre's polynomials. *Error*: of the potential, root mean square over the sphere around brain, fluid or skin, beside that of the potential itself. *RDM*: the same when "
          "both have the size 1; *magnitude*: how the sizes differ. *Field*: of gradients in the middles of the brain's elements. *head*: `--preset head`; "
          "*default*: `--elements` alone. *Spheres*: surfaces of 81,920 triangles each, `--keep-volumes`.")
 

@@ -212,8 +212,7 @@ def write_page(results):
 
 
 ABOUT = """Volumes of `bench/models/get-volumes.sh`, one thread, each label judged against its voxels (`octafront_judge_image`). Volume errors and Dice are of
-labels of 1,000 voxels and more; the two-sided Hausdorff distance, in voxels, is of all labels. Nets alone, before sizes, are
-measured in `docs/how/image-surfaces.md`."""
+labels of 1,000 voxels and more; the two-sided Hausdorff distance, in voxels, is of all labels. Nets alone: `docs/how/image-surfaces.md`."""
 
 
 def shown(rows, beside):

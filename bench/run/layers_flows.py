@@ -65,9 +65,7 @@ def measure(program, options, case, folder):
 
 HEAD = ["body", "layers x first height", "faces", "cells", "full, %", "stopped by", "SJ", "checkMesh", "n-o", "faces > 70", "skewness", "CPU s"]
 ABOUT = ("Bodies in a box that reaches a diagonal farther on all sides, layers on the body; vessels with layers on their walls, none on their ends (edges of a "
-         "hundredth of the diagonal). Growth 1.2, one thread. The wing is generated (NACA 0012, its trailing edge sharp), the other bodies are those of OpenFOAM's examples, mended "
-         "(`bench/models/get-flows.sh`). The vessels are public test data of vmtk (aorta-surface, -open-ends, -segment-2) and vmtk4aneurysms (two models), open ends "
-         "closed by repair. *n-o*: most non-orthogonality, degrees; *skewness*: the most, checkMesh wants at most 4.")
+         "hundredth of the diagonal). Growth 1.2, one thread. The wing is NACA 0012 with a sharp trailing edge, the other bodies are OpenFOAM's examples, mended (`bench/models/get-flows.sh`), the vessels public test data of vmtk and vmtk4aneurysms. *n-o*: most non-orthogonality, degrees; *skewness*: the most, checkMesh wants at most 4.")
 
 
 def shown(rows):
