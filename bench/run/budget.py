@@ -16,7 +16,7 @@ import tempfile
 
 from bench.ours import counter
 from bench.pages.origin import written_by
-from bench.pages.tables import put, spread, worst, write
+from bench.pages.tables import put, spread, write
 from bench.process import run_bounded, run_measured
 
 CAD = (".step", ".stp", ".brep", ".iges", ".igs")
@@ -89,8 +89,7 @@ def tables(name, rows, failed):
     refused = collections.defaultdict(list)
     for model, why in failed:
         refused[why].append(model)
-    lines = [*spread(HEAD, rows, [c for c in HEAD[1:-1] if c != "before" and any(r[HEAD.index(c)] for r in rows)]), "", f"Each: {put(name, HEAD, rows)}.", "", "Least angles:", "",
-             *worst(HEAD, rows, "least angle", ["model", "triangles", "made", "least β", "least angle", "CPU s"], count=5)]
+    lines = [*spread(HEAD, rows, [c for c in HEAD[1:-1] if c != "before" and any(r[HEAD.index(c)] for r in rows)]), "", f"Each: {put(name, HEAD, rows)}."]
     return lines + (["", "Not meshed:", "", *(f"- {why}: {', '.join(models)}" for why, models in sorted(refused.items()))] if failed else [])
 
 

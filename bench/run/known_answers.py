@@ -161,8 +161,8 @@ def line(name, rows):
 def shown(lines, failed):
     """Rows of cells: the kinds of which not all is right, and the sum."""
     return [*tables.table(HEAD, [c for c in lines if c[HEAD.index("all right")] != c[1] or c[0] == "all"]), "",
-            f"Each kind: {tables.put('repair-known', HEAD, lines)}.", "", f"## The {len(failed)} failed", "", *tables.table(FAILED_HEAD, failed[:20]), "",
-            f"Each: {tables.put('repair-known-failed', FAILED_HEAD, failed)}."]
+            f"Each kind: {tables.put('repair-known', HEAD, lines)}.", "",
+            f"The {len(failed)} that failed, and what was wrong: {tables.put('repair-known-failed', FAILED_HEAD, failed)}."]
 
 
 def page(rows, command):

@@ -74,7 +74,7 @@ def shown(rows):
     vessels = [r for r in rows if r[0].startswith("vessel")]
     shown = ["full, %", "SJ", "n-o", "skewness", "CPU s"]
     columns = ["body", "layers x first height", "cells", "full, %", "SJ", "checkMesh", "faces > 70", "CPU s"]
-    return [*tables.some(HEAD, bodies, columns), "", f"The {len({r[0] for r in vessels})} vessels:", "",
+    return [*tables.some(HEAD, [r for r in bodies if r[1] == "3 x 1/10"], columns), "", f"The {len({r[0] for r in vessels})} vessels:", "",
             *tables.spread_by("layers x first height", HEAD, vessels, shown), "", f"Each: {tables.put('layers-flows', HEAD, rows)}."]
 
 

@@ -170,9 +170,7 @@ def shown(runs, stages):
     """Rows of cells: of all runs; of each stage of those with the first number of elements."""
     columns = [c for c in HEAD if c not in ("hash", "least peak memory of a rank, GB")]
     return [*tables.some(HEAD, runs, columns), "", f"Hashes of those of one number of elements are one: {tables.put('ranks', HEAD, runs)}.", "",
-            "Of each stage, with 2 ranks and more: MB that a rank takes; the longest share over the mean one; the mean seconds in shared work and in talk, waiting "
-            "included; the whole.", "", *tables.spread_by("stage", STAGE_HEAD, stages, STAGE_HEAD[2:]), "",
-            f"Median, least and most. Each: {tables.put('ranks-stages', STAGE_HEAD, stages)}."]
+            f"Of each stage, with 2 ranks and more: {tables.put('ranks-stages', STAGE_HEAD, stages)}."]
 
 
 def page(told, larger, model, elements, args):
