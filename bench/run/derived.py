@@ -76,8 +76,7 @@ def main():
     command = "bench/run.sh derived" + (f" --every {a.every}" if a.every > 1 else "") + (" --automatic" if a.automatic else "")
     text = ["# The clean models and what is derived from them", "",
             f"{written_by(command)} over {len(models)} surfaces "
-            f"(`bench/models/get-models.sh`, `bench/models/derive-models.sh`), {a.jobs} at a time. What forced means: "
-            "`docs/how/sizes-and-surface.md`. The worst ten at automatic sizes, each around its worst element, forced or not "
+            f"(`bench/models/get-models.sh`, `bench/models/derive-models.sh`), {a.jobs} at a time. *Forced*: `docs/how/sizes-and-surface.md`. The worst ten at automatic sizes, each around its worst element, forced or not "
             "(`bench/pages/pictures.sh`):", "", "![](../images/derived-worst.png)", ""]
     with concurrent.futures.ThreadPoolExecutor(a.jobs) as pool:
         for name, options in list(RUNS.items())[:1 if a.automatic else 2]:

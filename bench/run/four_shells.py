@@ -32,7 +32,6 @@ HEAD = ["from", "sizes", "elements", "in the fluid", "in the skull", "skull, mS/
         "mesh, CPU s", "iterations"]
 SHOWN = ["from", "sizes", "elements", "nodes off the spheres, mm", "brain: error, %", "brain: RDM, %", "brain: magnitude, %",
          "fluid: magnitude, %", "skin: error, %", "field in the brain, %"]
-SHOWN_CASES = ["from", "skull, mS/m", "electrodes, mm", "brain: error, %", "skin: error, %", "field in the brain, %"]
 
 
 def source(kind, folder):
@@ -143,10 +142,8 @@ def main():
     if a.only:
         return
     link = tables.put("four-shells", HEAD, rows)
-    largest = [cells for i, (_, sizes, elements) in enumerate(MESHES) if sizes == "head" and elements == 500_000 for cells in rows[i * len(CASES):][1:len(CASES)]]
     tables.write("four-shells", ["# Four shells", "", f"{written_by('bench/run.sh four_shells')}, one thread. {ABOUT}", "",
-                                 *tables.some(HEAD, rows[::len(CASES)], SHOWN), "", "A skull of 10 mS/m, and electrodes of 6 mm, at 500 thousand elements:", "",
-                                 *tables.some(HEAD, largest, SHOWN_CASES), "", f"With all figures: {link}."])
+                                 *tables.some(HEAD, rows[::len(CASES)], SHOWN), "", f"With a skull of 10 mS/m, electrodes of 6 mm, and all figures: {link}."])
 
 
 if __name__ == "__main__":

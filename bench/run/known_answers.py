@@ -171,7 +171,7 @@ def page(rows, command):
         "# Damaged models whose answer is known", "", f"{written_by(command, {r['origin'] for r in rows})}.", "",
         f"{len(rows)} clean models, fetched and generated, damaged in known ways (`bench/models/damage_models.py` says how), repaired and",
         "meshed with default options and `--sheets drop`, and measured against the undamaged model (`bench/judges/judge_answer.cpp`), which repair never sees:", "",
-        f"- **meshed**: `octafront mesh` gave a mesh. **All right**: the repaired surface and the mesh pass every test below.",
+        f"- **All right**: the repaired surface and the mesh pass every test below.",
         "- **topology**: valid, 2-manifold; components, shells and genus those of the undamaged model, where they are known (not the",
         "  genus of united copies that are not convex).",
         f"- **farthest**: two-sided distance to the undamaged model at most {100 * TOLERANCE:g} % of the diagonal for the repaired surface, the tolerance,",

@@ -181,8 +181,7 @@ def page(rows):
             f"{written_by('bench/run.sh repair', {r['origin'] for r in rows})}. Models: `bench/models/get-models.sh`. Distances in ‰ of the diagonal, measured by "
             "sampling from the boundary to the input, except where what closes a hole is nearest. *Lost*: the part of the input's area farther than 1 ‰ from the "
             "boundary, and outside of it (sheets, fins) or inside (inner walls, debris). In the rows, defects: O open, E non-manifold edge, V non-manifold vertex, "
-            "S self-intersection, R misoriented, I inside out, D degenerate, U unused vertices; *only input, only mesh inside*: random points where the input's "
-            "generalised winding number is sure and the mesh says else; turned and doubled faces mislead the number.", "",
+            "S self-intersection, R misoriented, I inside out, D degenerate, U unused vertices; *only input, only mesh inside*: random points where the input's generalised winding number is sure and the mesh says else.", "",
             *summary(rows), "", *each([cells_of(r) for r in rows]), "", "![before and after](../images/repair.png)"]
 
 

@@ -163,7 +163,7 @@ def main():
     dirty = dirty_rows(args.build, [r for r in rows if r["set"] == "dirty"], args.timeout, pool)
     if not args.only:
         write("status", ["# Status over all test models", "",
-                         f"{written_by('bench/run.sh status')}. Models: `bench/models/get-models.sh`. Two at a time, so times are rough. Every file is read "
+                         f"{written_by('bench/run.sh status')}. Models: `bench/models/get-models.sh`. Every file is read "
                          "back and judged by `bench/judges/evaluate.cpp`: validity by exact signs, two-sided Hausdorff distance to the input by sampling, volume "
                          "against the enclosed volume of the input.", "",
                          *page([cells(row, r, True) for row, r in auto], [kept_cells(row, r) for row, r in kept], dirty)])

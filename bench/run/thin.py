@@ -151,8 +151,7 @@ def main():
     if a.page:
         tables.write("thin-bodies", [
             "# Thin bodies", "", f"{written_by('bench/run.sh thin --page')}, one thread.", "",
-            "Plates of 1 x 1, discs of radius 1 (48 corners), tubes of radius 1 and height 2 (48 corners), shells of spheres of radius 1 (10,240 triangles), "
-            "turned by some angles; thickness in the same units. Every file is judged by `octafront_evaluate`. Gmsh: surface anew at size "
+            "Plates of 1 x 1, discs of radius 1 (48 corners), tubes of radius 1 and height 2 (48 corners), shells of spheres of radius 1 (10,240 triangles), turned by some angles. Gmsh: surface anew at size "
             f"{SIZE}; TetGen keeps the input's triangles, and fills the cavities of shells, as no hole is marked. At most {a.timeout:.0f} s.", "", *shown(rows)])
 
 
