@@ -105,7 +105,7 @@ def main():
     print("| --- |" + " ---: |" * 10)
     for house in houses:
         print("|", " | ".join(map(str, house.row())), "|")
-    print("\nAn arrow: a file of one includes a header of the other. The last row is the tree on top of the commit that it names.\n")
+    print("\nAn arrow: a file of one includes a header of the other.\n")
     print("| wing | rooms | files | lines |\n| --- | ---: | ---: | ---: |")
     for wing in sorted(now.wings, key=lambda w: -now.lines(now.wing, w)):
         rooms = sum(r.split("/")[0] == wing for r in now.rooms)
