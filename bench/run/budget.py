@@ -89,7 +89,7 @@ def tables(name, rows, failed):
     refused = collections.defaultdict(list)
     for model, why in failed:
         refused[why].append(model)
-    lines = [*spread(HEAD, rows, [c for c in HEAD[1:-1] if c != "before" and any(r[HEAD.index(c)] for r in rows)]), "", f"Each: {put(name, HEAD, rows)}."]
+    lines = [*spread(HEAD, rows, [c for c in HEAD[1:-1] if c not in ("triangles", "before", "rounds", "work") and any(r[HEAD.index(c)] for r in rows)]), "", f"Each: {put(name, HEAD, rows)}."]
     return lines + (["", "Not meshed:", "", *(f"- {why}: {', '.join(models)}" for why, models in sorted(refused.items()))] if failed else [])
 
 
@@ -99,8 +99,7 @@ def page(options, rows, failed, command):
     lines = [
         f"# {options.title}", "",
         f"{written_by(command)}, on one thread; the budget: `docs/how/sizes-and-surface.md`. *Said* is the prediction once the surface is made, which is what `--dry-run` "
-        "says; *least β* and *least angle* (dihedral, degrees) are of the worst element, forced by the input or not; "
-        "*work* is the triangles of all rounds of the surface front over those of the last.", "",
+        "says; *least β* and *least angle* (dihedral, degrees) are of the worst element, forced by the input or not.", "",
         f"{len(rows)} models meshed, {len(failed)} not. Above 1.3 times the budget: **{len(over)}**"
         + (" (" + ", ".join(r["model"] for r in over) + ")" if over else "")
         + f". Said and made more than 30 % apart: **{len(off)}**"
