@@ -44,8 +44,13 @@ class Search {
   }
 
   Bends run() {
-    locate();
+    targets_.resize(vertices_.size());
+    parallel_for(vertices_.size(), [&](std::size_t i) { targets_[i] = target_of_vertex(vertices_[i]); });
+    bulge_.assign(table_.size(), {});
+    if (order_ > 2) find_bulges();
+    locate_nodes();
     prepare();
+    find_moves();
     return displacements();
   }
 
@@ -99,23 +104,45 @@ class Search {
     const Target found = target(vertex_on_curve_[v], point(v), normal_[v], kMostMove * shortest_[v]);
     return found.on == On::kCurve && surface_.is_corner(found.foot, tolerance_) ? Target{On::kCorner, {}} : found;
   }
-  Target target_in_edge(std::size_t e, std::size_t node) const {
+  Target target_near_edge(std::size_t e, Vec3 p) const {
     Vec3 normal;
     for (const std::uint32_t h : table_.uses(e)) normal += normalized(face_normal(h / 3));
-    return target(on_curve_[e], in_edge(order_, node).mean(mesh_.points, table_.edges[e]), normal,
-                  kMostBend * edge_length(e));
+    return target(on_curve_[e], p, normal, kMostBend * edge_length(e));
+  }
+  /// Where a node of an edge or face is looked for.
+  template <std::size_t kCorners>
+  Vec3 raised(const NodePlace<kCorners>& place, const std::array<VertexIndex, kCorners>& corners,
+              std::span<const Vec3> bulges) const {
+    return place.mean(mesh_.points, corners) + part_of_parabola(order_) * place.on_parabolas(bulges);
+  }
+  Target target_in_edge(std::size_t e, std::size_t node) const {
+    return target_near_edge(e, raised(in_edge(order_, node), table_.edges[e], {&bulge_[e], 1}));
   }
   Target target_in_face(std::size_t f, std::size_t node) const {
     const Triangle corners = face_key(faces_[f]);
-    return target(false, in_face(order_, node).mean(mesh_.points, corners), face_normal(f),
-                  kMostBend * longest_edge(corners));
+    return target(false, raised(in_face(order_, node), corners, bulges_of_face(table_, bulge_, corners)),
+                  face_normal(f), kMostBend * longest_edge(corners));
   }
   std::size_t first_of_edge(std::size_t e) const { return vertices_.size() + e * nodes_in_edge(order_); }
   std::size_t first_of_face(std::size_t f) const { return first_of_edge(table_.size()) + f * nodes_in_face(order_); }
 
-  void locate() {
+  /// How far the middles of edges lie off the straight ones, once their ends are where they want to be.
+  void find_bulges() {
+    targets_.resize(first_of_edge(0) + table_.size());
+    const auto target_of = [&](std::size_t e) -> Target& { return targets_[first_of_edge(0) + e]; };
+    parallel_for(table_.size(), [&](std::size_t e) { target_of(e) = target_near_edge(e, middle(e)); });
+    prepare();
+    find_moves();
+    parallel_for(table_.size(), [&](std::size_t e) {
+      NodeMoves by{};
+      const auto in_middle = [](std::size_t) { return in_edge(2, 0); };
+      const double most = most_bend(table_.edges[e], edge_length(e), first_of_edge(0) + e, 1, in_middle, by);
+      if (most >= 0 && most <= kMostBend) bulge_[e] = by[0];
+    });
+  }
+
+  void locate_nodes() {
     targets_.resize(first_of_face(faces_.size()));
-    parallel_for(vertices_.size(), [&](std::size_t i) { targets_[i] = target_of_vertex(vertices_[i]); });
     parallel_for(table_.size(), [&](std::size_t e) {
       for (std::size_t k = 0; k < nodes_in_edge(order_); ++k) targets_[first_of_edge(e) + k] = target_in_edge(e, k);
     });
@@ -142,19 +169,21 @@ class Search {
     return by;
   }
 
+  void find_moves() {
+    moved_.assign(mesh_.points.size(), std::nullopt);
+    for (std::size_t i = 0; i < vertices_.size(); ++i)
+      moved_[vertices_[i]] = displacement(targets_[i], point(vertices_[i]), kMostMove * shortest_[vertices_[i]]);
+  }
+
   Bends displacements() const {
     Bends bends;
-    std::vector<std::optional<Vec3>> moved(mesh_.points.size());
-    for (std::size_t i = 0; i < vertices_.size(); ++i) {
-      const VertexIndex v = vertices_[i];
-      moved[v] = displacement(targets_[i], point(v), kMostMove * shortest_[v]);
-      if (moved[v] && length(*moved[v]) > kStraightBend * shortest_[v]) bends.corners.push_back({v, *moved[v]});
-    }
+    for (const VertexIndex v : vertices_)
+      if (moved_[v] && length(*moved_[v]) > kStraightBend * shortest_[v]) bends.corners.push_back({v, *moved_[v]});
     for (std::size_t e = 0; e < table_.size(); ++e) {
       NodeMoves by{};
       const double most = most_bend(
           table_.edges[e], edge_length(e), first_of_edge(e), nodes_in_edge(order_),
-          [&](std::size_t k) { return in_edge(order_, k); }, moved, by);
+          [&](std::size_t k) { return in_edge(order_, k); }, by);
       if (most > kStraightBend && most <= kMostBend) bends.edges.push_back({table_.edges[e], by});
     }
     for (std::size_t f = 0; f < faces_.size() && nodes_in_face(order_) > 0; ++f) {
@@ -162,7 +191,7 @@ class Search {
       NodeMoves by{};
       const double most = most_bend(
           corners, longest_edge(corners), first_of_face(f), nodes_in_face(order_),
-          [&](std::size_t k) { return in_face(order_, k); }, moved, by);
+          [&](std::size_t k) { return in_face(order_, k); }, by);
       if (most >= 0 && most <= kMostBend) bends.faces.push_back({corners, by});
     }
     std::ranges::sort(bends.faces, {}, &FaceBend::face);
@@ -172,11 +201,11 @@ class Search {
   /// not known: what bends to the surface with a corner that stays away from it would be a bump.
   template <class Corners, class InPart>
   double most_bend(const Corners& corners, double size, std::size_t first, std::size_t nodes, const InPart& in_part,
-                   const std::vector<std::optional<Vec3>>& moved, NodeMoves& by) const {
+                   NodeMoves& by) const {
     std::vector<Vec3> moves;
     for (const VertexIndex v : corners) {
-      if (!moved[v]) return -1;
-      moves.push_back(*moved[v]);
+      if (!moved_[v]) return -1;
+      moves.push_back(*moved_[v]);
     }
     double most = 0;
     for (std::size_t k = 0; k < nodes; ++k) {
@@ -201,6 +230,8 @@ class Search {
   std::vector<double> shortest_;  // edge at a vertex; infinite inside
   std::vector<VertexIndex> vertices_;
   std::vector<Target> targets_;
+  std::vector<std::optional<Vec3>> moved_;
+  std::vector<Vec3> bulge_;  // per edge; of orders above 2
 };
 
 }  // namespace
