@@ -9,7 +9,7 @@ import pathlib
 import sys
 
 from bench.peers import netgen
-from bench.peers.netgen import ROOT, function, load_library
+from bench.peers.netgen import ROOT, load_library
 from bench.process import finish, run_measured
 
 KINDS = {1: 4, 2: 11, 3: 29, 4: 30}  # Gmsh's, by order

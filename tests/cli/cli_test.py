@@ -392,8 +392,23 @@ class CommandLine(unittest.TestCase):
             lines[at] = f"{number} {float(x) + 50} {y} {z}"
             files[2].write_text("\n".join(lines))
             self.assertIn("is not positive everywhere", self.run_cli("check", files[2], status=3).stderr)
-        refused = self.run_cli("mesh", part, "-o", self.dir / "a.vtu", "--order", 3, "--layers", 2, "--total", 1, status=2)
-        self.assertIn("--order 3 and 4 go with neither --layers nor --periodic yet", refused.stderr)
+        mesh = self.dir / "part3.msh"
+        refused = self.run_cli("adapt", mesh, "-o", self.dir / "a.vtu", "--order", 3, "--size", 12, "--only", "sphere:0,0,0,9", status=2)
+        self.assertIn("--order and --only do not go together", refused.stderr)
+
+    def test_orders_3_and_4_in_parts_and_with_layers(self):
+        whole = self.dir / "whole.vtu"
+        layered = self.run_cli("mesh", SAMPLES / "gear.obj", "--size", 12, "--order", 3, "--layers", 2, "--total", 1, "-o", whole).stdout
+        self.assertIn("of order 3 here", layered)  # wedges are written as their tetrahedra
+        told = self.run_cli("check", whole).stdout
+        self.assertIn("every Jacobian proven positive", told)
+        tets = re.search("a valid mesh of ([0-9]+) tetrahedra", told)[1]
+        self.run_cli("convert", whole, "-o", self.dir / "p.msh", "--parts", 3)
+        if subprocess.run(["/usr/bin/python3", "-c", "import gmsh"], capture_output=True, check=False).returncode == 0:
+            # Gmsh counts the elements of all parts.
+            count = subprocess.run(["/usr/bin/python3", "-c", "import gmsh,sys; gmsh.initialize(); gmsh.option.setNumber('General.Terminal', 0); gmsh.open(sys.argv[1]);"
+                                    "print(len(gmsh.model.mesh.getElementsByType(29)[0]))", self.dir / "p.msh"], capture_output=True, text=True, check=True)
+            self.assertEqual(count.stdout.split()[-1], tets)
 
     def test_contacts_are_shared_split_or_separate(self):
         self.needs_cad()

@@ -9,6 +9,7 @@
 #include <algorithm>
 #include <cstdint>
 #include <optional>
+#include <utility>
 
 namespace octafront::curved {
 
@@ -249,7 +250,7 @@ void add_corners_above(std::span<const VertexIndex> below, Bends& bends) {
     if (by[below[v]] != Vec3{}) bends.corners.push_back({v, by[below[v]]});
 }
 
-void add_edges_above(std::span<const VertexIndex> below, const TetEdges& edges, Bends& bends) {
+void add_edges_above(std::span<const VertexIndex> below, const TetEdges& edges, int order, Bends& bends) {
   if (below.empty()) return;
   const auto is_before = [](const EdgeBend& bend, const Edge& edge) { return bend.edge < edge; };
   std::vector<EdgeBend> all;
@@ -258,7 +259,9 @@ void add_edges_above(std::span<const VertexIndex> below, const TetEdges& edges, 
     const VertexIndex a = below[edge[0]], b = below[edge[1]];
     const Edge under{std::min(a, b), std::max(a, b)};
     const auto found = std::lower_bound(bends.edges.begin(), bends.edges.end(), under, is_before);
-    if (found != bends.edges.end() && found->edge == under) all.push_back({edge, found->by});
+    if (found == bends.edges.end() || found->edge != under) continue;
+    all.push_back({edge, found->by});
+    if (a > b) std::reverse(all.back().by.begin(), all.back().by.begin() + (order - 1));
   }
   // Those of the boundary that lie above others bend on their own.
   const auto above = static_cast<std::ptrdiff_t>(all.size());
@@ -268,6 +271,88 @@ void add_edges_above(std::span<const VertexIndex> below, const TetEdges& edges, 
   }
   std::ranges::sort(all, {}, &EdgeBend::edge);
   bends.edges = std::move(all);
+}
+
+namespace {
+
+/// How places of a wall move that are nodes of its edges and faces.
+class WallMoves {
+ public:
+  WallMoves(const Bends& bends, int order) : bends_(bends), order_(order) {}
+
+  /// By weights of vertices of the wall; nothing where none lies in an edge or face that bends.
+  std::optional<Vec3> at(std::vector<std::pair<VertexIndex, int>> weights) const {
+    std::ranges::sort(weights);
+    if (weights.size() == 2) return on_edge(weights);
+    return weights.size() == 3 ? on_face(weights) : std::nullopt;
+  }
+
+ private:
+  using Weights = std::vector<std::pair<VertexIndex, int>>;
+
+  std::optional<Vec3> on_edge(const Weights& w) const {
+    const auto found = std::ranges::lower_bound(bends_.edges, Edge{w[0].first, w[1].first}, {}, &EdgeBend::edge);
+    if (found == bends_.edges.end() || found->edge != Edge{w[0].first, w[1].first}) return std::nullopt;
+    return found->by[static_cast<std::size_t>(w[1].second - 1)];
+  }
+  std::optional<Vec3> on_face(const Weights& w) const {
+    const Triangle face{w[0].first, w[1].first, w[2].first};
+    const auto found = std::ranges::lower_bound(bends_.faces, face, {}, &FaceBend::face);
+    if (found == bends_.faces.end() || found->face != face) return std::nullopt;
+    for (std::size_t k = 0; k < nodes_in_face(order_); ++k)
+      if (const auto place = in_face(order_, k).weights;
+          place[0] == w[0].second && place[1] == w[1].second && place[2] == w[2].second)
+        return found->by[k];
+    return std::nullopt;
+  }
+
+  const Bends& bends_;
+  int order_;
+};
+
+/// A node of an element as one of the wall under it.
+template <std::size_t kCorners>
+std::vector<std::pair<VertexIndex, int>> weights_below(std::span<const VertexIndex> below,
+                                                       const std::array<VertexIndex, kCorners>& corners,
+                                                       const std::array<double, kCorners>& weights) {
+  std::vector<std::pair<VertexIndex, int>> under;
+  for (std::size_t i = 0; i < kCorners; ++i) {
+    const auto found = std::ranges::find(under, below[corners[i]], &std::pair<VertexIndex, int>::first);
+    if (found == under.end())
+      under.push_back({below[corners[i]], static_cast<int>(weights[i])});
+    else
+      found->second += static_cast<int>(weights[i]);
+  }
+  return under;
+}
+
+}  // namespace
+
+void add_faces_above(std::span<const VertexIndex> below, const TetFaces& faces, const TetMesh& mesh, int order,
+                     Bends& bends) {
+  if (below.empty() || nodes_in_face(order) == 0) return;
+  const WallMoves wall(bends, order);
+  std::vector<FaceBend> all;
+  for (const Triangle& face : faces.corners) {
+    if (std::ranges::all_of(face, [&](VertexIndex v) { return below[v] == v; })) continue;
+    FaceBend bend{face, {}};
+    bool moves = false;
+    for (std::size_t k = 0; k < nodes_in_face(order); ++k)
+      if (const auto by = wall.at(weights_below(below, face, in_face(order, k).weights)))
+        bend.by[k] = *by, moves = true;
+    if (moves) all.push_back(bend);
+  }
+  for (TetIndex t = 0; t < mesh.tets.size() && nodes_in_tet(order) > 0; ++t)
+    if (const auto by = wall.at(weights_below<4>(below, mesh.tets[t], {1, 1, 1, 1})))
+      bends.tets.push_back({t, {*by, Vec3{}, Vec3{}}});
+  const auto above = static_cast<std::ptrdiff_t>(all.size());
+  for (const FaceBend& bend : bends.faces) {
+    const auto end = all.begin() + above,
+               found = std::ranges::lower_bound(all.begin(), end, bend.face, {}, &FaceBend::face);
+    if (found == end || found->face != bend.face) all.push_back(bend);
+  }
+  std::ranges::sort(all, {}, &FaceBend::face);
+  bends.faces = std::move(all);
 }
 
 }  // namespace octafront::curved
