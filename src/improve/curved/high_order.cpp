@@ -24,6 +24,8 @@ namespace {
 
 /// An element that seems bad by its coefficients is halved into so many parts.
 constexpr std::size_t kPartsOfBent = 64;
+/// After so many of moving inner nodes edges and faces go back without them.
+constexpr int kRoundsOfInnerNodes = 3;
 
 /// How much each node inside an edge counts at a place where the barycentric coordinates of its ends are `low` and
 /// `high`: low * high times the polynomial of high - low that is 1 / (low * high) at this node and 0 at the others.
@@ -81,25 +83,22 @@ class HighOrder {
     add_faces_above(below, faces_, mesh, order, bends);
     take(bends);
     find_bent_tets();
-    parallel_for(edges_.size(), [&](std::size_t e) { place_edge(static_cast<std::uint32_t>(e)); });
-    parallel_for(faces_.corners.size(), [&](std::size_t f) { place_face(static_cast<std::uint32_t>(f)); });
-    parallel_for(mesh.tets.size(), [&](std::size_t t) { place_tet(static_cast<TetIndex>(t)); });
+    place_all();
   }
 
-  /// Whether something went back.
-  bool settle(const RunContext& context) {
-    bool is_eased = false;
-    settle_tets(
-        bent_tets_, [&](TetIndex t) { return is_good(t); },
-        [&](TetIndex t, std::vector<std::uint32_t>& back) {
-          if (const std::uint32_t most = most_bent(t); most != kNone) back.push_back(most);
-        },
-        [&](const std::vector<std::uint32_t>& back) {
-          is_eased |= !back.empty();
-          return go_back(back);
-        },
-        context);
-    return is_eased;
+  /// Until every element is good: inner nodes move, and where that is not enough what bends most goes back, a few times
+  /// with all others where they were at first; then without them.
+  void make_good(const RunContext& context) {
+    for (int round = 0; round < kRoundsOfInnerNodes; ++round) {
+      raise_worst_elements(mesh_, context);
+      bool all_good = true;
+      const std::vector<std::uint32_t> back = spoiling(all_good);
+      if (all_good) return;
+      for (const std::uint32_t i : back) ++bent_[i].halvings;
+      place_all();
+    }
+    settle(context);
+    raise_worst_elements(mesh_, context);
   }
 
   void count(SecondOrderSummary& summary) const {
@@ -121,6 +120,36 @@ class HighOrder {
   }
 
  private:
+  void settle(const RunContext& context) {
+    settle_tets(
+        bent_tets_, [&](TetIndex t) { return is_good(t); },
+        [&](TetIndex t, std::vector<std::uint32_t>& back) {
+          if (const std::uint32_t most = most_bent(t); most != kNone) back.push_back(most);
+        },
+        [&](const std::vector<std::uint32_t>& back) { return go_back(back); }, context);
+  }
+
+  /// What bends most of each element that is not good, each once, ascending.
+  std::vector<std::uint32_t> spoiling(bool& all_good) const {
+    std::vector<char> good(mesh_.tets.size());
+    parallel_for(good.size(), [&](std::size_t t) { good[t] = is_good(static_cast<TetIndex>(t)); });
+    std::vector<std::uint32_t> back;
+    for (TetIndex t = 0; t < good.size(); ++t) {
+      if (good[t]) continue;
+      all_good = false;
+      if (const std::uint32_t most = most_bent(t); most != kNone) back.push_back(most);
+    }
+    std::ranges::sort(back);
+    back.erase(std::unique(back.begin(), back.end()), back.end());
+    return back;
+  }
+
+  void place_all() {
+    parallel_for(edges_.size(), [&](std::size_t e) { place_edge(static_cast<std::uint32_t>(e)); });
+    parallel_for(faces_.corners.size(), [&](std::size_t f) { place_face(static_cast<std::uint32_t>(f)); });
+    parallel_for(mesh_.tets.size(), [&](std::size_t t) { place_tet(static_cast<TetIndex>(t)); });
+  }
+
   VertexIndex node_in_edge(std::uint32_t e, std::size_t k) const {
     return static_cast<VertexIndex>(corners_ + e * nodes_in_edge(order_) + k);
   }
@@ -307,8 +336,7 @@ class HighOrder {
 void add_high_order(TetMesh& mesh, int order, std::span<const VertexIndex> below, Bends bends,
                     SecondOrderSummary& summary, const RunContext& context) {
   HighOrder high(mesh, order, below, std::move(bends));
-  raise_worst_elements(mesh, context);
-  if (high.settle(context)) raise_worst_elements(mesh, context);
+  high.make_good(context);
   high.count(summary);
 }
 
