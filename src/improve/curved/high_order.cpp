@@ -90,7 +90,7 @@ class HighOrder {
   /// with all others where they were at first; then without them.
   void make_good(const RunContext& context) {
     for (int round = 0; round < kRoundsOfInnerNodes; ++round) {
-      raise_worst_elements(mesh_, context);
+      raise_worst_elements(mesh_, -HUGE_VAL, context);
       bool all_good = true;
       const std::vector<std::uint32_t> back = spoiling(all_good);
       if (all_good) return;
@@ -98,7 +98,7 @@ class HighOrder {
       place_all();
     }
     settle(context);
-    raise_worst_elements(mesh_, context);
+    raise_worst_elements(mesh_, kLeastScaledJacobian, context);
   }
 
   void count(SecondOrderSummary& summary) const {

@@ -33,7 +33,7 @@ constexpr int kStepsOfNodes = 4;
 
 class InnerNodes {
  public:
-  explicit InnerNodes(TetMesh& mesh) : mesh_(mesh), each_(mesh.high_nodes_per_tet()) {}
+  InnerNodes(TetMesh& mesh, double least) : mesh_(mesh), least_(least), each_(mesh.high_nodes_per_tet()) {}
 
   void run(const RunContext& context) {
     find_poor();
@@ -131,6 +131,7 @@ class InnerNodes {
   bool move(VertexIndex v, double edge) {
     bool moves = false;
     double worst = worst_at(v, -HUGE_VAL), step = kFirstStepOfNodes * edge;
+    if (worst < least_) return false;
     for (int i = 0; i < kStepsOfNodes && worst < kWellShaped; ++i, step /= 2)
       for (int axis = 0; axis < 3; ++axis)
         for (const double by : {step, -step}) {
@@ -148,6 +149,7 @@ class InnerNodes {
   }
 
   TetMesh& mesh_;
+  double least_;
   std::size_t each_;
   std::vector<TetIndex> poor_;  ///< the worst first
   std::vector<char> is_fixed_;
@@ -157,8 +159,8 @@ class InnerNodes {
 
 }  // namespace
 
-void raise_worst_elements(TetMesh& mesh, const RunContext& context) {
-  InnerNodes(mesh).run(context);
+void raise_worst_elements(TetMesh& mesh, double least, const RunContext& context) {
+  InnerNodes(mesh, least).run(context);
 }
 
 }  // namespace octafront::curved
