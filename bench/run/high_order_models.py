@@ -36,7 +36,7 @@ def box_of(program, file, folder):
         run_measured([program, "info", ROOT / file, "--json", report], ".", TIMEOUT)
         return math.dist(*json.loads(report.read_text())["box"]), ROOT / file
     off = folder / (pathlib.Path(file).stem + ".off")
-    run_measured([program, "convert", ROOT / file, "-o", off], ".", TIMEOUT)
+    run_measured([program, "repair", ROOT / file, "-o", off], ".", TIMEOUT)
     points = np.array(read_off(off)[0])
     return float(np.linalg.norm(points.max(0) - points.min(0))), off
 
@@ -102,7 +102,7 @@ def row_of(program, file, by, part, order, mesh, source, diagonal, told, cpu, er
     found = None if error else proven(program, mesh, folder)
     if not found:
         return [name, by, f"1/{part}", order, *[""] * 10, f"{cpu:.1f}", "", (error or "not read")[:80]]
-    off = off_the_surface(mesh, order, file, source, diagonal)
+    off = off_the_surface(mesh, order, file, source, diagonal) if part == MIDDLE else ["", ""]
     elements = told.get("tets") or elements_of(mesh, order)
     orders = sum(s["cpu_seconds"] for s in told.get("stages", []) if s["name"].startswith(("second order", "order")))
     curved = told.get("second_order", {})
