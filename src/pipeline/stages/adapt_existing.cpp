@@ -109,7 +109,7 @@ void raise_order_of(const TetMesh& before, const Domain* surface, AdaptedMesh& r
 
 void refuse_order_of_parts(const Options& options) {
   if (options.order > 1 && !options.adapt.only.empty())
-    throw OptionError("`order` and `adapt.only` do not go together: what is outside keeps its bits, and stays linear");
+    throw OptionError("`order` and `only` do not go together: what is outside keeps its bits, and stays linear");
 }
 
 /// `given`: the linear mesh of `before`.

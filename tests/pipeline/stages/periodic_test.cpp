@@ -106,8 +106,9 @@ TEST(Periodic, NodesBehindCornersArePaired) {
     EXPECT_EQ(first_defect(r.mesh), std::nullopt);
     EXPECT_EQ(r.mesh.order(), order);
     for (int axis = 0; axis < 3; ++axis) expect_same_faces(r.mesh, axis);
-    Options along = periodic(0.4, "z");
-    along.order = order;
+    Options along = o;
+    along.size.size = 0.4;
+    along.periodic.erase(0, 2);  // "z"
     const Result pipe = generate(testing::pipe(48, 20), along);
     EXPECT_EQ(check_jacobians(pipe.mesh).invalid, 0u);
     EXPECT_GT(pipe.report.second_order.curved, 100u);
