@@ -694,6 +694,7 @@ def carry(old: Tets | Path, new: Tets | Path, fields: Mapping[str, npt.ArrayLike
     progress: Progress | None = None,
     threads: int = 0) -> CarriedFields: ...
 def move(mesh: Tets | Path, displacement: npt.ArrayLike, *, fields: Mapping[str, npt.ArrayLike] | None = None,
+    size: float | str | SizeFunction | SizeField | None = None,
     linear_elements: bool = False,
     free_integrals: bool = False,
     quadratic_nodes: bool = False,
