@@ -40,7 +40,8 @@
 #   bench/run.sh flows       a car, a wing and a bracket in a wind tunnel, tetrahedra and polyhedra, solved by simpleFoam -> docs/measured/flows.md
 #   bench/run.sh cavity      a lid-driven cavity on tetrahedra, their dual and polyDualMesh's, beside published values -> docs/measured/cavity.md
 #   bench/run.sh freecad     jobs from FreeCAD to CalculiX, meshed by Gmsh as FreeCAD does it and by our workbench -> docs/use/freecad.md
-#   bench/run.sh high_order  orders 2 to 4: how true are walls, how good elements, read by Gmsh, beside its own -> docs/measured/high-order.md
+#   bench/run.sh high_order [STEP...]  orders 2 to 4: how true are walls, how good elements of 30 models, beside Gmsh and Netgen; a Poisson problem
+#                            solved by DOLFINx and MFEM; speed (20 minutes) -> docs/measured/high-order.md
 #   bench/run.sh inside      sheets, lines and points in a block, beside Gmsh and TetGen     -> docs/measured/inside.md
 #   bench/run.sh periodic    periodic cells with and without periods, beside Gmsh, solved    -> docs/measured/periodic.md
 #   bench/run.sh ranks       one mesh by 1, 2, 4 and 8 processes: memory, bytes, imbalance, what all do alike -> docs/measured/ranks.md
@@ -73,7 +74,7 @@ need_packages "${build_packages[@]}" python3
 { [ "$1" != repair ] && [ "$1" != damage ]; } || need_packages python3-numpy python3-meshio
 [[ $1 != layers_* ]] || need_packages python3-numpy python3-meshio openfoam
 { [ "$1" != flows ] && [ "$1" != cavity ]; } || need_packages python3-numpy openfoam
-[ "$1" != high_order ] || need_packages python3-numpy python3-gmsh "${cad_packages[@]}"
+[ "$1" != high_order ] || need_packages python3-numpy python3-gmsh python3-netgen python3-dolfinx "${cad_packages[@]}"
 [ "$1" != freecad ] || need_packages freecad gmsh calculix-ccx "${cad_packages[@]}"
 { [ "$1" != adapt ] && [ "$1" != motion ]; } || need_packages python3-numpy python3-dolfinx
 [ "$1" != periodic ] || need_packages calculix-ccx

@@ -171,11 +171,7 @@ void tell_cad_info(Session& session) {
 
 void tell_mesh_info(Session& session, const TetMesh& mesh) {
   const Box3 box = bounding_box(mesh.points);
-  double volume = 0;
-  for (const auto& [i, j, k, l] : mesh.tets) {
-    const Vec3 p = mesh.points[i];
-    volume += dot(cross(mesh.points[j] - p, mesh.points[k] - p), mesh.points[l] - p) / 6;
-  }
+  const double volume = curved_volume(mesh);
   session.found({{"kind", "mesh"}, {"order", mesh.order()}, {"box", json_of_box(box)}, {"volume", volume}});
   session.say(fmt::format("  {}\n  volume {:.6g}, order {}\n", box_in_words(box), volume, mesh.order()));
   tell_mesh(session, mesh, "a mesh");

@@ -126,6 +126,7 @@ def mesh_stl_surface(library, surface, size):
         status = function(library, name, ctypes.c_int, *[pointer] * len(arguments))(*arguments)
         if status not in (0, 1):  # InitSTLGeometry returns 1 for success
             sys.exit(f"error: netgen's {name[2:].split('EPP')[0]} returned {status}")
+    parameters.geometry = geometry
     return mesh, parameters, start
 
 

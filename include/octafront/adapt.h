@@ -64,8 +64,9 @@ struct AdaptedMesh {
 /// smooth surface that the given ones stand for, within SurfaceOptions::max_deviation of it, by default .4 % of the
 /// diagonal, or beside it where the mesh is too coarse for a smooth surface of its own: such that as much of the body
 /// is lost as is won, place by place. Patches, regions, sheets, curves, sets of faces, edges and elements keep their
-/// places, corners their points. Features are found by options.surface.feature_angle. A mesh of second order is taken
-/// as a linear one.
+/// places, corners their points. Features are found by options.surface.feature_angle. A mesh of higher order is taken
+/// as a linear one; with options.order 2 to 4 the new one is curved along the walls as they were (make_curved()), or
+/// along the triangles of `surface`, and old_of_new has kNone for nodes behind corners.
 ///
 /// Where options.adapt.only names places, only their elements and those of a halo of options.adapt.halo layers around
 /// them may change. All others, their vertices, faces and edges keep their bits and numbers; so does what stays the

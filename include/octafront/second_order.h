@@ -48,9 +48,12 @@ SecondOrderSummary make_second_order(TetMesh& mesh, const SurfaceMesh* surface =
 /// The same of order 2, 3 or 4 (tet10, tet20, tet35). Nodes lie where the barycentric coordinates are multiples of
 /// 1 / order, those of boundary and interfaces on the smooth surface; elements beside them follow by the polynomials
 /// that continue edges and faces. Each element is proven valid (check_jacobians()). Orders 3 and 4 are not for meshes
-/// with boundary layers or periods. Throws OptionError for these and another order.
+/// with periods. Throws OptionError for these and another order.
 SecondOrderSummary make_curved(TetMesh& mesh, int order, const SurfaceMesh* surface = nullptr,
                                double feature_angle = 40, const RunContext& context = no_context());
+
+/// Volume of a mesh of any order, curved as it is. Unit: input unit cubed.
+double curved_volume(const TetMesh& mesh);
 
 /// Drops all nodes but the corners.
 void make_linear(TetMesh& mesh);
@@ -68,6 +71,7 @@ struct JacobianSummary {
   std::uint64_t undecided = 0;        ///< of these; of orders 3 and 4, where neither was proven
   std::vector<InvalidElement> first;  ///< the first ten of them
   double least_scaled_jacobian = 1;
+  double mean_scaled_jacobian = 1;  ///< of the least of each element; straight ones count as 1
   TetIndex least_tet = kNone;
 };
 

@@ -727,6 +727,7 @@ def adapt(mesh: Tets | Path, *, sizes: npt.ArrayLike | None = None, metric: npt.
     feature_angle: float | None = None,
     max_deviation: float | str | None = None,
     fix_boundary: bool = False,
+    order: int = 1,
     no_bridging: bool = False,
     only: str | Sequence[str] = '',
     halo: int = 2,

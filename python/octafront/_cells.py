@@ -31,9 +31,10 @@ def wide_nodes(wide, count):
 
 
 def elements(mesh, wide):
-    """Kinds of elements, none of them empty but perhaps the only one; and of each tetrahedron its kind and place there."""
+    """Kinds of elements, none of them empty but perhaps the only one; and of each tetrahedron its kind and place there. Of orders 3 and 4
+    tetrahedra alone."""
     tets = _with_mids(mesh, "tetra", mesh.tets, None)
-    if not len(wide):
+    if not len(wide) or mesh.order > 2:
         return [Kind(_name(mesh, "tetra"), tets, np.arange(len(tets)))], None
     alone = np.ones(len(mesh.tets), bool)
     for k in range(3):

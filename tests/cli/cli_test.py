@@ -404,8 +404,22 @@ class CommandLine(unittest.TestCase):
             lines[at] = f"{number} {float(x) + 50} {y} {z}"
             files[2].write_text("\n".join(lines))
             self.assertIn("is not positive everywhere", self.run_cli("check", files[2], status=3).stderr)
-        refused = self.run_cli("mesh", part, "-o", self.dir / "a.vtu", "--order", 3, "--layers", 2, "--total", 1, status=2)
-        self.assertIn("--order 3 and 4 go with neither --layers nor --periodic yet", refused.stderr)
+        mesh = self.dir / "part3.msh"
+        refused = self.run_cli("adapt", mesh, "-o", self.dir / "a.vtu", "--order", 3, "--size", 12, "--only", "sphere:0,0,0,9", status=2)
+        self.assertIn("--order and --only do not go together", refused.stderr)
+
+    def test_orders_3_and_4_in_parts_and_with_layers(self):
+        whole = self.dir / "whole.vtu"
+        layered = self.run_cli("mesh", SAMPLES / "gear.obj", "--size", 12, "--order", 3, "--layers", 2, "--total", 1, "-o", whole).stdout
+        self.assertIn("of order 3 here", layered)  # wedges are written as their tetrahedra
+        told = self.run_cli("check", whole).stdout
+        self.assertIn("every Jacobian proven positive", told)
+        tets = re.search("a valid mesh of ([0-9]+) tetrahedra", told)[1]
+        for name in ("p.msh", "p.vtkhdf", "p.pvtu"):
+            self.run_cli("convert", whole, "-o", self.dir / name, "--parts", 3)
+        told = self.run_cli("check", self.dir / "p.msh").stdout
+        self.assertIn(f"a valid mesh of {tets} tetrahedra", told)
+        self.assertIn("every Jacobian proven positive", told)
 
     def test_contacts_are_shared_split_or_separate(self):
         self.needs_cad()

@@ -116,6 +116,29 @@ SurfaceMesh joined(SurfaceMesh a, const SurfaceMesh& b) {
   return a;
 }
 
+SurfaceMesh pipe(int around, int along) {
+  SurfaceMesh s;
+  const auto at = [&](int i, int k) { return static_cast<VertexIndex>(k * around + (i % around + around) % around); };
+  for (int k = 0; k <= along; ++k)
+    for (int i = 0; i < around; ++i) {
+      const double turn = 2 * std::numbers::pi * i / around;
+      s.points.push_back({std::cos(turn), std::sin(turn), 4.0 * k / along});
+    }
+  const auto add = [&](Triangle t, std::uint32_t patch) { s.triangles.push_back(t), s.patch.push_back(patch); };
+  for (int k = 0; k < along; ++k)
+    for (int i = 0; i < around; ++i) {
+      add({at(i, k), at(i + 1, k), at(i + 1, k + 1)}, 0);
+      add({at(i, k), at(i + 1, k + 1), at(i, k + 1)}, 0);
+    }
+  const auto low = static_cast<VertexIndex>(s.points.size()), high = low + 1;
+  s.points.push_back({0, 0, 0});
+  s.points.push_back({0, 0, 4});
+  for (int i = 0; i < around; ++i)
+    add({low, at(i + 1, 0), at(i, 0)}, 1), add({high, at(i, along), at(i + 1, along)}, 2);
+  s.patch_names = {"wall", "inlet", "outlet"};
+  return s;
+}
+
 SurfaceMesh reversed(SurfaceMesh surface) {
   for (Triangle& t : surface.triangles) std::swap(t[1], t[2]);
   return surface;

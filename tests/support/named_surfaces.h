@@ -21,6 +21,9 @@ SurfaceMesh icosphere(int levels, double r = 1);
 /// Torus about the z axis, n segments around and m segments of the tube.
 SurfaceMesh torus(int n, int m, double major = 1, double minor = 0.35);
 
+/// A pipe of radius 1 and length 4 along z: the patches wall, inlet and outlet.
+SurfaceMesh pipe(int around, int along);
+
 /// A sphere with a concentric spherical cavity.
 SurfaceMesh hollow_sphere(int levels, double outer = 1, double inner = 0.5);
 

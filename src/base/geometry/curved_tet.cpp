@@ -279,6 +279,18 @@ Validity validity_by_halves(const TetLattice& lattice, std::vector<double> coeff
 
 }  // namespace
 
+Vec3 place_in_tet(int order, std::span<const Vec3> nodes, const std::array<double, 4>& at) {
+  const TetLattice& lattice = tet_lattice(order);
+  Vec3 sum;
+  for (std::size_t n = 0; n < lattice.size(); ++n) {
+    double share = 1;
+    for (std::size_t i = 0; i < 4; ++i)
+      for (int m = 0; m < lattice.weights(n)[i]; ++m) share *= (at[i] - m) / (lattice.weights(n)[i] - m);
+    if (share != 0) sum += share * nodes[n];
+  }
+  return sum;
+}
+
 double least_jacobian(int order, std::span<const Vec3> nodes, std::size_t parts) {
   const TetLattice& lattice = tables_of(order).coefficients;
   const auto is_better = [](const PartOfTet& a, const PartOfTet& b) {

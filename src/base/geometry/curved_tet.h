@@ -7,6 +7,7 @@
 
 #include <octafront/vec.h>
 
+#include <array>
 #include <span>
 #include <vector>
 
@@ -24,6 +25,10 @@ enum class Validity {
   kInvalid,    ///< it is proven not to be, at some place
   kUndecided,  ///< too near to 0 to tell by this many halves
 };
+
+/// The place of an element where barycentric coordinates are `at` over the order; a node's own place, bit for bit,
+/// where these are its weights.
+Vec3 place_in_tet(int order, std::span<const Vec3> nodes, const std::array<double, 4>& at);
 
 /// `nodes`: those of tet_lattice(order). About 2 microseconds at order 3, 9 at order 4.
 JacobianRange jacobian_range(int order, std::span<const Vec3> nodes);

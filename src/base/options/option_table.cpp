@@ -348,7 +348,7 @@ std::vector<Row<Options>> improve_rows() {
                    "2, 3, 4: elements of this order, with nodes on their edges, faces and inside; those of the "
                    "boundary on the smooth surface that the input stands for, every element proven valid; "
                    "1: linear ones",
-                   "Elements");
+                   "Elements", "mesh improve adapt");
             order.choices = {"1", "2", "3", "4"};
             return order.common("2: elements of second order, curved to the surface");
           }(),

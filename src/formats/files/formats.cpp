@@ -236,14 +236,14 @@ constexpr std::array kFormats{
                                                 "sections and boundary conditions; needs HDF5", kWriteCgns)),
                                false),
                    kWriteCgnsPolyhedra),
-    read(with_fields(with_wedges(or_text(
-             mesh("vtk", "legacy VTK", ".vtk", binary(kAll), "as VTU, binary or text, uncompressed", write_vtk)))),
+    read(with_fields(with_wedges(or_text(mesh("vtk", "legacy VTK", ".vtk", all_orders(binary(kAll)),
+                                              "as VTU, binary or text, uncompressed", write_vtk)))),
          told_vtk, read_vtk),
     with_parts(of_several_files(with_fields(with_wedges(or_text(mesh(
-                   "pvtu", "parallel VTU", ".pvtu", binary(kAll),
+                   "pvtu", "parallel VTU", ".pvtu", all_orders(binary(kAll)),
                    "as VTU, a piece for each part in a folder beside, with ghosts and global numbers", nullptr))))),
                write_pvtu, check_pvtu_target),
-    with_parts(with_fields(with_wedges(mesh("vtkhdf", "VTKHDF", ".vtkhdf", binary(kAll),
+    with_parts(with_fields(with_wedges(mesh("vtkhdf", "VTKHDF", ".vtkhdf", all_orders(binary(kAll)),
                                             "as VTU, in one file also in parts; needs HDF5", kWriteVtkHdf))),
                kWriteVtkHdfParts),
     read(with_surfaces_alone(

@@ -28,7 +28,7 @@ class Losses {
                        mesh_.mesh().order(), mesh_.mesh().points.size() - mesh_.points()));
     if (const std::size_t wide = mesh_.mesh().wide_cells.size(); mesh_.wide_cells().size() < wide)
       lose(fmt::format("is given no wedges and pyramids{} here: {} are written as their tetrahedra",
-                       holds.wide_cells ? " of second order" : "", wide));
+                       !holds.wide_cells ? "" : fmt::format(" of order {}", mesh_.mesh().order()), wide));
     if (!holds.doubles) lose("holds single precision: coordinates are rounded to seven digits");
     numbered("region", mesh_.parts(Origin::kRegion), holds.regions);
     numbered("patch", mesh_.parts(Origin::kPatch), holds.patches);

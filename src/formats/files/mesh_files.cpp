@@ -197,7 +197,10 @@ std::vector<std::string> write_mesh(const std::string& file, const TetMesh& give
   std::string title;
   const FormatInfo info = info_for(format.info, options, title);
   const FormatHolds& holds = info.holds;
-  const bool is_wide = holds.second_order && given_mesh.is_second_order() ? holds.curved_wide_cells : holds.wide_cells;
+  // Of orders 3 and 4 there are tetrahedra only.
+  const bool is_high = holds.high_order && given_mesh.high_order > 0;
+  const bool is_wide =
+      !is_high && (holds.second_order && given_mesh.is_second_order() ? holds.curved_wide_cells : holds.wide_cells);
   const bool is_curved = is_wide && holds.second_order;
   const io::JobMesh for_job = options.job ? io::mesh_for_job(given_mesh, *options.job) : io::JobMesh{};
   const TetMesh& mesh = for_job.changed ? *for_job.changed : given_mesh;
@@ -209,8 +212,6 @@ std::vector<std::string> write_mesh(const std::string& file, const TetMesh& give
                              .last_points = without.diagonals});
   if (goes_in_parts(format, options) && mesh.tets.empty())
     throw OptionError(fmt::format("{}: a mesh without volume elements is not written in parts", file));
-  if (goes_in_parts(format, options) && mesh.high_order > 0)
-    throw OptionError(fmt::format("{}: a mesh of order {} is not written in parts", file, mesh.order()));
   if (options.polyhedral && mesh.tets.empty())
     throw OptionError(fmt::format("{}: a mesh without volume elements has no polyhedra", file));
   const bool wedges_in_parts = goes_in_parts(format, options) && !parts.wide_cells().empty();

@@ -22,6 +22,13 @@ Pieces::Pieces(const MeshParts& whole, Division division, std::span<const MeshFi
   local_.assign(mesh_.points.size(), kNone);
 }
 
+/// Those that are written.
+std::span<const VertexIndex> Pieces::nodes_behind_corners(std::size_t t) const {
+  if (whole_.second_order()) return mesh_.mid_nodes[t];
+  const std::size_t each = whole_.order() > 2 ? mesh_.high_nodes_per_tet() : 0;
+  return std::span(mesh_.high_nodes).subspan(t * each, each);
+}
+
 /// The corners that are in several parts, and the tetrahedra at them.
 void Pieces::find_rims() {
   const std::size_t points = mesh_.points.size();
@@ -29,8 +36,7 @@ void Pieces::find_rims() {
   std::vector<std::uint8_t> is_shared(points, 0);
   parallel_for(mesh_.tets.size(), [&](std::size_t t) {
     for (const VertexIndex v : mesh_.tets[t]) SharedValue(point_part_[v]).lower_to(division_.part[t]);
-    if (whole_.second_order())
-      for (const VertexIndex v : mesh_.mid_nodes[t]) SharedValue(point_part_[v]).lower_to(division_.part[t]);
+    for (const VertexIndex v : nodes_behind_corners(t)) SharedValue(point_part_[v]).lower_to(division_.part[t]);
   });
   parallel_for(mesh_.tets.size(), [&](std::size_t t) {
     for (const VertexIndex v : mesh_.tets[t])
@@ -156,7 +162,7 @@ Piece Pieces::piece(std::uint32_t number, bool with_ghosts) {
   const auto edges = whole_.edges() == 0 ? std::vector<std::uint32_t>() : items_of(own_edges_[number], edges_, ghosts);
   const std::vector<VertexIndex> points = points_of(tets);
   piece.mesh = part_of(mesh_, {points, edges, faces, tets}, local_);
-  if (!whole_.second_order()) piece.mesh.mid_nodes.clear();
+  if (whole_.order() == 1) piece.mesh.mid_nodes.clear(), piece.mesh.high_nodes.clear(), piece.mesh.high_order = 0;
   if (whole_.wide_cells().empty()) piece.mesh.wide_cells.clear();
   if (whole_.wide_faces().empty()) piece.mesh.wide_faces.clear();
   piece.point_ids.assign(points.begin(), points.end());
@@ -187,7 +193,7 @@ std::vector<VertexIndex> Pieces::points_of(std::span<const TetIndex> tets) {
   };
   for (const TetIndex t : tets) {
     take(mesh_.tets[t]);
-    if (whole_.second_order()) take(mesh_.mid_nodes[t]);
+    take(nodes_behind_corners(t));
   }
   for (const VertexIndex v : points) local_[v] = kNone;
   parallel_sort(points);

@@ -64,6 +64,7 @@ class Pieces {
   /// The element that a face or edge belongs to, and its number.
   using Item = std::pair<TetIndex, std::uint32_t>;
 
+  std::span<const VertexIndex> nodes_behind_corners(std::size_t t) const;
   void find_rims();
   void find_faces();
   void find_edges();

@@ -9,6 +9,7 @@
 #include <algorithm>
 #include <cstdint>
 #include <optional>
+#include <utility>
 
 namespace octafront::curved {
 
@@ -44,8 +45,13 @@ class Search {
   }
 
   Bends run() {
-    locate();
+    targets_.resize(vertices_.size());
+    parallel_for(vertices_.size(), [&](std::size_t i) { targets_[i] = target_of_vertex(vertices_[i]); });
+    bulge_.assign(table_.size(), {});
+    if (order_ > 2) find_bulges();
+    locate_nodes();
     prepare();
+    find_moves();
     return displacements();
   }
 
@@ -99,23 +105,45 @@ class Search {
     const Target found = target(vertex_on_curve_[v], point(v), normal_[v], kMostMove * shortest_[v]);
     return found.on == On::kCurve && surface_.is_corner(found.foot, tolerance_) ? Target{On::kCorner, {}} : found;
   }
-  Target target_in_edge(std::size_t e, std::size_t node) const {
+  Target target_near_edge(std::size_t e, Vec3 p) const {
     Vec3 normal;
     for (const std::uint32_t h : table_.uses(e)) normal += normalized(face_normal(h / 3));
-    return target(on_curve_[e], in_edge(order_, node).mean(mesh_.points, table_.edges[e]), normal,
-                  kMostBend * edge_length(e));
+    return target(on_curve_[e], p, normal, kMostBend * edge_length(e));
+  }
+  /// Where a node of an edge or face is looked for.
+  template <std::size_t kCorners>
+  Vec3 raised(const NodePlace<kCorners>& place, const std::array<VertexIndex, kCorners>& corners,
+              std::span<const Vec3> bulges) const {
+    return place.mean(mesh_.points, corners) + part_of_parabola(order_) * place.on_parabolas(bulges);
+  }
+  Target target_in_edge(std::size_t e, std::size_t node) const {
+    return target_near_edge(e, raised(in_edge(order_, node), table_.edges[e], {&bulge_[e], 1}));
   }
   Target target_in_face(std::size_t f, std::size_t node) const {
     const Triangle corners = face_key(faces_[f]);
-    return target(false, in_face(order_, node).mean(mesh_.points, corners), face_normal(f),
-                  kMostBend * longest_edge(corners));
+    return target(false, raised(in_face(order_, node), corners, bulges_of_face(table_, bulge_, corners)),
+                  face_normal(f), kMostBend * longest_edge(corners));
   }
   std::size_t first_of_edge(std::size_t e) const { return vertices_.size() + e * nodes_in_edge(order_); }
   std::size_t first_of_face(std::size_t f) const { return first_of_edge(table_.size()) + f * nodes_in_face(order_); }
 
-  void locate() {
+  /// How far the middles of edges lie off the straight ones, once their ends are where they want to be.
+  void find_bulges() {
+    targets_.resize(first_of_edge(0) + table_.size());
+    const auto target_of = [&](std::size_t e) -> Target& { return targets_[first_of_edge(0) + e]; };
+    parallel_for(table_.size(), [&](std::size_t e) { target_of(e) = target_near_edge(e, middle(e)); });
+    prepare();
+    find_moves();
+    parallel_for(table_.size(), [&](std::size_t e) {
+      NodeMoves by{};
+      const auto in_middle = [](std::size_t) { return in_edge(2, 0); };
+      const double most = most_bend(table_.edges[e], edge_length(e), first_of_edge(0) + e, 1, in_middle, by);
+      if (most >= 0 && most <= kMostBend) bulge_[e] = by[0];
+    });
+  }
+
+  void locate_nodes() {
     targets_.resize(first_of_face(faces_.size()));
-    parallel_for(vertices_.size(), [&](std::size_t i) { targets_[i] = target_of_vertex(vertices_[i]); });
     parallel_for(table_.size(), [&](std::size_t e) {
       for (std::size_t k = 0; k < nodes_in_edge(order_); ++k) targets_[first_of_edge(e) + k] = target_in_edge(e, k);
     });
@@ -142,19 +170,21 @@ class Search {
     return by;
   }
 
+  void find_moves() {
+    moved_.assign(mesh_.points.size(), std::nullopt);
+    for (std::size_t i = 0; i < vertices_.size(); ++i)
+      moved_[vertices_[i]] = displacement(targets_[i], point(vertices_[i]), kMostMove * shortest_[vertices_[i]]);
+  }
+
   Bends displacements() const {
     Bends bends;
-    std::vector<std::optional<Vec3>> moved(mesh_.points.size());
-    for (std::size_t i = 0; i < vertices_.size(); ++i) {
-      const VertexIndex v = vertices_[i];
-      moved[v] = displacement(targets_[i], point(v), kMostMove * shortest_[v]);
-      if (moved[v] && length(*moved[v]) > kStraightBend * shortest_[v]) bends.corners.push_back({v, *moved[v]});
-    }
+    for (const VertexIndex v : vertices_)
+      if (moved_[v] && length(*moved_[v]) > kStraightBend * shortest_[v]) bends.corners.push_back({v, *moved_[v]});
     for (std::size_t e = 0; e < table_.size(); ++e) {
       NodeMoves by{};
       const double most = most_bend(
           table_.edges[e], edge_length(e), first_of_edge(e), nodes_in_edge(order_),
-          [&](std::size_t k) { return in_edge(order_, k); }, moved, by);
+          [&](std::size_t k) { return in_edge(order_, k); }, by);
       if (most > kStraightBend && most <= kMostBend) bends.edges.push_back({table_.edges[e], by});
     }
     for (std::size_t f = 0; f < faces_.size() && nodes_in_face(order_) > 0; ++f) {
@@ -162,7 +192,7 @@ class Search {
       NodeMoves by{};
       const double most = most_bend(
           corners, longest_edge(corners), first_of_face(f), nodes_in_face(order_),
-          [&](std::size_t k) { return in_face(order_, k); }, moved, by);
+          [&](std::size_t k) { return in_face(order_, k); }, by);
       if (most >= 0 && most <= kMostBend) bends.faces.push_back({corners, by});
     }
     std::ranges::sort(bends.faces, {}, &FaceBend::face);
@@ -172,11 +202,11 @@ class Search {
   /// not known: what bends to the surface with a corner that stays away from it would be a bump.
   template <class Corners, class InPart>
   double most_bend(const Corners& corners, double size, std::size_t first, std::size_t nodes, const InPart& in_part,
-                   const std::vector<std::optional<Vec3>>& moved, NodeMoves& by) const {
+                   NodeMoves& by) const {
     std::vector<Vec3> moves;
     for (const VertexIndex v : corners) {
-      if (!moved[v]) return -1;
-      moves.push_back(*moved[v]);
+      if (!moved_[v]) return -1;
+      moves.push_back(*moved_[v]);
     }
     double most = 0;
     for (std::size_t k = 0; k < nodes; ++k) {
@@ -201,6 +231,8 @@ class Search {
   std::vector<double> shortest_;  // edge at a vertex; infinite inside
   std::vector<VertexIndex> vertices_;
   std::vector<Target> targets_;
+  std::vector<std::optional<Vec3>> moved_;
+  std::vector<Vec3> bulge_;  // per edge; of orders above 2
 };
 
 }  // namespace
@@ -218,7 +250,7 @@ void add_corners_above(std::span<const VertexIndex> below, Bends& bends) {
     if (by[below[v]] != Vec3{}) bends.corners.push_back({v, by[below[v]]});
 }
 
-void add_edges_above(std::span<const VertexIndex> below, const TetEdges& edges, Bends& bends) {
+void add_edges_above(std::span<const VertexIndex> below, const TetEdges& edges, int order, Bends& bends) {
   if (below.empty()) return;
   const auto is_before = [](const EdgeBend& bend, const Edge& edge) { return bend.edge < edge; };
   std::vector<EdgeBend> all;
@@ -227,7 +259,9 @@ void add_edges_above(std::span<const VertexIndex> below, const TetEdges& edges, 
     const VertexIndex a = below[edge[0]], b = below[edge[1]];
     const Edge under{std::min(a, b), std::max(a, b)};
     const auto found = std::lower_bound(bends.edges.begin(), bends.edges.end(), under, is_before);
-    if (found != bends.edges.end() && found->edge == under) all.push_back({edge, found->by});
+    if (found == bends.edges.end() || found->edge != under) continue;
+    all.push_back({edge, found->by});
+    if (a > b) std::reverse(all.back().by.begin(), all.back().by.begin() + (order - 1));
   }
   // Those of the boundary that lie above others bend on their own.
   const auto above = static_cast<std::ptrdiff_t>(all.size());
@@ -237,6 +271,88 @@ void add_edges_above(std::span<const VertexIndex> below, const TetEdges& edges, 
   }
   std::ranges::sort(all, {}, &EdgeBend::edge);
   bends.edges = std::move(all);
+}
+
+namespace {
+
+/// How places of a wall move that are nodes of its edges and faces.
+class WallMoves {
+ public:
+  WallMoves(const Bends& bends, int order) : bends_(bends), order_(order) {}
+
+  /// By weights of vertices of the wall; nothing where none lies in an edge or face that bends.
+  std::optional<Vec3> at(std::vector<std::pair<VertexIndex, int>> weights) const {
+    std::ranges::sort(weights);
+    if (weights.size() == 2) return on_edge(weights);
+    return weights.size() == 3 ? on_face(weights) : std::nullopt;
+  }
+
+ private:
+  using Weights = std::vector<std::pair<VertexIndex, int>>;
+
+  std::optional<Vec3> on_edge(const Weights& w) const {
+    const auto found = std::ranges::lower_bound(bends_.edges, Edge{w[0].first, w[1].first}, {}, &EdgeBend::edge);
+    if (found == bends_.edges.end() || found->edge != Edge{w[0].first, w[1].first}) return std::nullopt;
+    return found->by[static_cast<std::size_t>(w[1].second - 1)];
+  }
+  std::optional<Vec3> on_face(const Weights& w) const {
+    const Triangle face{w[0].first, w[1].first, w[2].first};
+    const auto found = std::ranges::lower_bound(bends_.faces, face, {}, &FaceBend::face);
+    if (found == bends_.faces.end() || found->face != face) return std::nullopt;
+    for (std::size_t k = 0; k < nodes_in_face(order_); ++k)
+      if (const auto place = in_face(order_, k).weights;
+          place[0] == w[0].second && place[1] == w[1].second && place[2] == w[2].second)
+        return found->by[k];
+    return std::nullopt;
+  }
+
+  const Bends& bends_;
+  int order_;
+};
+
+/// A node of an element as one of the wall under it.
+template <std::size_t kCorners>
+std::vector<std::pair<VertexIndex, int>> weights_below(std::span<const VertexIndex> below,
+                                                       const std::array<VertexIndex, kCorners>& corners,
+                                                       const std::array<double, kCorners>& weights) {
+  std::vector<std::pair<VertexIndex, int>> under;
+  for (std::size_t i = 0; i < kCorners; ++i) {
+    const auto found = std::ranges::find(under, below[corners[i]], &std::pair<VertexIndex, int>::first);
+    if (found == under.end())
+      under.push_back({below[corners[i]], static_cast<int>(weights[i])});
+    else
+      found->second += static_cast<int>(weights[i]);
+  }
+  return under;
+}
+
+}  // namespace
+
+void add_faces_above(std::span<const VertexIndex> below, const TetFaces& faces, const TetMesh& mesh, int order,
+                     Bends& bends) {
+  if (below.empty() || nodes_in_face(order) == 0) return;
+  const WallMoves wall(bends, order);
+  std::vector<FaceBend> all;
+  for (const Triangle& face : faces.corners) {
+    if (std::ranges::all_of(face, [&](VertexIndex v) { return below[v] == v; })) continue;
+    FaceBend bend{face, {}};
+    bool moves = false;
+    for (std::size_t k = 0; k < nodes_in_face(order); ++k)
+      if (const auto by = wall.at(weights_below(below, face, in_face(order, k).weights)))
+        bend.by[k] = *by, moves = true;
+    if (moves) all.push_back(bend);
+  }
+  for (TetIndex t = 0; t < mesh.tets.size() && nodes_in_tet(order) > 0; ++t)
+    if (const auto by = wall.at(weights_below<4>(below, mesh.tets[t], {1, 1, 1, 1})))
+      bends.tets.push_back({t, {*by, Vec3{}, Vec3{}}});
+  const auto above = static_cast<std::ptrdiff_t>(all.size());
+  for (const FaceBend& bend : bends.faces) {
+    const auto end = all.begin() + above,
+               found = std::ranges::lower_bound(all.begin(), end, bend.face, {}, &FaceBend::face);
+    if (found == end || found->face != bend.face) all.push_back(bend);
+  }
+  std::ranges::sort(all, {}, &FaceBend::face);
+  bends.faces = std::move(all);
 }
 
 }  // namespace octafront::curved

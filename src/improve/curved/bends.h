@@ -36,10 +36,17 @@ struct FaceBend {
   NodeMoves by;
 };
 
+/// An element whose inner node has a place of its own; of order 4.
+struct TetBend {
+  TetIndex tet;
+  NodeMoves by;
+};
+
 struct Bends {
   std::vector<CornerMove> corners;  ///< ascending
   std::vector<EdgeBend> edges;      ///< ascending
   std::vector<FaceBend> faces;      ///< ascending; of orders 3 and 4
+  std::vector<TetBend> tets;        ///< ascending; of order 4
   std::size_t too_far = 0;          ///< corners that stay, for they would have to move too far
 };
 
@@ -53,6 +60,10 @@ Bends find_bends(const TetMesh& mesh, const TrueGeometry& geometry, int order = 
 /// What lies over vertices of the boundary goes along with them, nodes of columns over a wall: `below` has for each
 /// vertex the one of the boundary under it, itself if there is none.
 void add_corners_above(std::span<const VertexIndex> below, Bends& bends);
-void add_edges_above(std::span<const VertexIndex> below, const TetEdges& edges, Bends& bends);
+void add_edges_above(std::span<const VertexIndex> below, const TetEdges& edges, int order, Bends& bends);
+/// The same of faces and elements of orders 3 and 4, which move as the wall under each of their nodes does. `bends` has
+/// those of the wall alone, its edges too.
+void add_faces_above(std::span<const VertexIndex> below, const TetFaces& faces, const TetMesh& mesh, int order,
+                     Bends& bends);
 
 }  // namespace octafront::curved

@@ -5,6 +5,7 @@
 // public face is octafront/second_order.h.
 
 #include <octafront/second_order.h>
+#include <octafront/surface_mesh.h>
 
 #include "base/geometry/true_geometry.h"
 #include "base/mesh/known_surface.h"
@@ -32,9 +33,15 @@ SecondOrderSummary move_to_geometry(TetMesh& mesh, const TrueGeometry& geometry,
 SecondOrderSummary curve_to_geometry(TetMesh& mesh, const TrueGeometry& geometry, std::span<const VertexIndex> below,
                                      int order, const RunContext& context);
 
-/// Volume of a second-order mesh, curved as it is. Unit: input unit cubed.
-double curved_volume(const TetMesh& mesh);
-/// The same of each region of a mesh, linear ones too.
+/// Gives a linear mesh the nodes of this order: edges and faces that have the corners, bit for bit, of some of a curved
+/// mesh `before` follow these, as far as every element is proven valid. So improvement keeps the walls of a mesh.
+SecondOrderSummary curve_as_before(TetMesh& mesh, const TetMesh& before, int order, const RunContext& context);
+
+/// Boundary and interfaces of a mesh of any order as triangles between all of their nodes; patches as the mesh has
+/// them.
+SurfaceMesh walls_with_nodes(const TetMesh& mesh);
+
+/// curved_volume() of each region of a mesh.
 std::vector<double> curved_volumes(const TetMesh& mesh);
 
 /// What chords of a linear mesh cut off each region: the volume between flat faces and those that parabolas on the true

@@ -1,12 +1,12 @@
 #include "improve/curved/high_order.h"
 
-#include "base/core/groups.h"
 #include "base/core/parallel.h"
 #include "base/geometry/curved_tet.h"
 #include "base/geometry/tet_lattice.h"
 #include "base/mesh/face_table.h"
 #include "base/mesh/quadratic_nodes.h"
 #include "improve/curved/easing.h"
+#include "improve/curved/inner_nodes.h"
 #include "improve/curved/mid_nodes.h"
 #include "improve/curved/node_places.h"
 
@@ -24,6 +24,8 @@ namespace {
 
 /// An element that seems bad by its coefficients is halved into so many parts.
 constexpr std::size_t kPartsOfBent = 64;
+/// After so many of moving inner nodes edges and faces go back without them.
+constexpr int kRoundsOfInnerNodes = 3;
 
 /// How much each node inside an edge counts at a place where the barycentric coordinates of its ends are `low` and
 /// `high`: low * high times the polynomial of high - low that is 1 / (low * high) at this node and 0 at the others.
@@ -64,58 +66,39 @@ Vec3 moved_by(const Bent& bent, const std::array<double, 3>& shares) {
   return bent.part() * sum;
 }
 
-/// The faces of the tetrahedra, each once, their corners ascending.
-struct TetFaces {
-  std::vector<Triangle> corners;
-  std::vector<std::array<std::uint32_t, 4>> of_tet;
-
-  explicit TetFaces(const TetMesh& mesh) : of_tet(mesh.tets.size()) {
-    struct Use {
-      VertexIndex middle, high;
-      std::uint32_t half_face;
-    };
-    Groups<Use> uses(mesh.points.size(), [&](const auto& add) {
-      for (std::uint32_t t = 0; t < mesh.tets.size(); ++t)
-        for (int i = 0; i < 4; ++i) {
-          const Triangle key = face_key(octafront::face_of(mesh.tets[t], i));
-          add(key[0], Use{key[1], key[2], 4 * t + static_cast<std::uint32_t>(i)});
-        }
-    });
-    for (VertexIndex v = 0; v < uses.size(); ++v) {
-      const std::span<Use> here = uses[v];
-      std::ranges::sort(here, {}, [](const Use& u) { return std::array{u.middle, u.high, u.half_face}; });
-      for (std::size_t i = 0; i < here.size(); ++i) {
-        const auto& [middle, high, half_face] = here[i];
-        if (i == 0 || here[i - 1].middle != middle || here[i - 1].high != high) corners.push_back({v, middle, high});
-        of_tet[half_face / 4][half_face % 4] = static_cast<std::uint32_t>(corners.size() - 1);
-      }
-    }
-  }
-};
-
 class HighOrder {
  public:
-  HighOrder(TetMesh& mesh, int order, const Bends& bends)
-      : mesh_(mesh), order_(order), corners_(mesh.points.size()), faces_(mesh), edges_(edges_of(mesh, edge_of_)) {
+  HighOrder(TetMesh& mesh, int order, std::span<const VertexIndex> below, Bends bends)
+      : mesh_(mesh),
+        order_(order),
+        corners_(mesh.points.size()),
+        faces_(faces_of(mesh)),
+        edges_(edges_of(mesh, edge_of_)) {
     first_in_face_ = corners_ + edges_.size() * nodes_in_edge(order);
     first_in_tet_ = first_in_face_ + faces_.corners.size() * nodes_in_face(order);
     mesh.points.resize(first_in_tet_ + mesh.tets.size() * nodes_in_tet(order));
     mesh.high_order = static_cast<std::uint32_t>(order);
     number_nodes();
+    add_edges_above(below, edges_, order, bends);
+    add_faces_above(below, faces_, mesh, order, bends);
     take(bends);
     find_bent_tets();
-    parallel_for(edges_.size(), [&](std::size_t e) { place_edge(static_cast<std::uint32_t>(e)); });
-    parallel_for(faces_.corners.size(), [&](std::size_t f) { place_face(static_cast<std::uint32_t>(f)); });
-    parallel_for(mesh.tets.size(), [&](std::size_t t) { place_tet(static_cast<TetIndex>(t)); });
+    place_all();
   }
 
-  void settle(const RunContext& context) {
-    settle_tets(
-        bent_tets_, [&](TetIndex t) { return is_good(t); },
-        [&](TetIndex t, std::vector<std::uint32_t>& back) {
-          if (const std::uint32_t most = most_bent(t); most != kNone) back.push_back(most);
-        },
-        [&](const std::vector<std::uint32_t>& back) { return go_back(back); }, context);
+  /// Until every element is good: inner nodes move, and where that is not enough what bends most goes back, a few times
+  /// with all others where they were at first; then without them.
+  void make_good(const RunContext& context) {
+    for (int round = 0; round < kRoundsOfInnerNodes; ++round) {
+      raise_worst_elements(mesh_, -HUGE_VAL, context);
+      bool all_good = true;
+      const std::vector<std::uint32_t> back = spoiling(all_good);
+      if (all_good) return;
+      for (const std::uint32_t i : back) ++bent_[i].halvings;
+      place_all();
+    }
+    settle(context);
+    raise_worst_elements(mesh_, kLeastScaledJacobian, context);
   }
 
   void count(SecondOrderSummary& summary) const {
@@ -123,7 +106,7 @@ class HighOrder {
     for (std::size_t i = 0; i < bent_.size(); ++i) {
       if (i < edges)
         ++(bent_[i].halvings == 0 ? summary.curved : summary.eased);
-      else
+      else if (i < bent_faces_)
         summary.eased_faces += bent_[i].halvings > 0;
     }
     for (std::uint32_t e = 0; e < edges_.size(); ++e)
@@ -137,6 +120,36 @@ class HighOrder {
   }
 
  private:
+  void settle(const RunContext& context) {
+    settle_tets(
+        bent_tets_, [&](TetIndex t) { return is_good(t); },
+        [&](TetIndex t, std::vector<std::uint32_t>& back) {
+          if (const std::uint32_t most = most_bent(t); most != kNone) back.push_back(most);
+        },
+        [&](const std::vector<std::uint32_t>& back) { return go_back(back); }, context);
+  }
+
+  /// What bends most of each element that is not good, each once, ascending.
+  std::vector<std::uint32_t> spoiling(bool& all_good) const {
+    std::vector<char> good(mesh_.tets.size());
+    parallel_for(good.size(), [&](std::size_t t) { good[t] = is_good(static_cast<TetIndex>(t)); });
+    std::vector<std::uint32_t> back;
+    for (TetIndex t = 0; t < good.size(); ++t) {
+      if (good[t]) continue;
+      all_good = false;
+      if (const std::uint32_t most = most_bent(t); most != kNone) back.push_back(most);
+    }
+    std::ranges::sort(back);
+    back.erase(std::unique(back.begin(), back.end()), back.end());
+    return back;
+  }
+
+  void place_all() {
+    parallel_for(edges_.size(), [&](std::size_t e) { place_edge(static_cast<std::uint32_t>(e)); });
+    parallel_for(faces_.corners.size(), [&](std::size_t f) { place_face(static_cast<std::uint32_t>(f)); });
+    parallel_for(mesh_.tets.size(), [&](std::size_t t) { place_tet(static_cast<TetIndex>(t)); });
+  }
+
   VertexIndex node_in_edge(std::uint32_t e, std::size_t k) const {
     return static_cast<VertexIndex>(corners_ + e * nodes_in_edge(order_) + k);
   }
@@ -184,7 +197,24 @@ class HighOrder {
       for (std::size_t k = 0; k < nodes_in_face(order_); ++k) by[k] -= moved_in_face(f, in_face(order_, k).weights);
       add(by, bent_of_face_[f]);
     }
+    bent_faces_ = bent_.size();
+    if (bends.tets.empty()) return;
+    bent_of_tet_.assign(mesh_.tets.size(), kNone);
+    for (const TetBend& bend : bends.tets) add({bend.by[0] - moved_in_tet(bend.tet)}, bent_of_tet_[bend.tet]);
   }
+
+  /// What its edges and faces do to the middle of an element.
+  Vec3 moved_in_tet(TetIndex t) const {
+    Vec3 sum;
+    for (const std::uint32_t e : edge_of_[t])
+      if (const std::uint32_t bent = bent_of_edge_[e]; bent != kNone)
+        sum += moved_by(bent_[bent], shares_of_edge(order_, 0.25, 0.25));
+    for (const std::uint32_t f : faces_.of_tet[t])
+      if (const std::uint32_t bent = bent_of_face_[f]; bent != kNone)
+        sum += moved_by(bent_[bent], shares_of_face(order_, {0.25, 0.25, 0.25}));
+    return sum;
+  }
+  std::uint32_t bent_of_tet(TetIndex t) const { return bent_of_tet_.empty() ? kNone : bent_of_tet_[t]; }
 
   void add(const NodeMoves& by, std::uint32_t& place) {
     double most = 0;
@@ -238,13 +268,8 @@ class HighOrder {
     const Tet& tet = mesh_.tets[t];
     Vec3 at;
     for (const VertexIndex v : tet) at += 0.25 * mesh_.points[v];
-    for (const std::uint32_t e : edge_of_[t])
-      if (const std::uint32_t bent = bent_of_edge_[e]; bent != kNone)
-        at += moved_by(bent_[bent], shares_of_edge(order_, 0.25, 0.25));
-    for (const std::uint32_t f : faces_.of_tet[t])
-      if (const std::uint32_t bent = bent_of_face_[f]; bent != kNone)
-        at += moved_by(bent_[bent], shares_of_face(order_, {0.25, 0.25, 0.25}));
-    mesh_.points[node_in_tet(t, 0)] = at;
+    if (const std::uint32_t bent = bent_of_tet(t); bent != kNone) at += bent_[bent].part() * bent_[bent].by[0];
+    mesh_.points[node_in_tet(t, 0)] = at + moved_in_tet(t);
   }
 
   bool is_good(TetIndex t) const {
@@ -265,6 +290,7 @@ class HighOrder {
     };
     for (const std::uint32_t e : edge_of_[t]) look(bent_of_edge_[e]);
     for (const std::uint32_t f : faces_.of_tet[t]) look(bent_of_face_[f]);
+    look(bent_of_tet(t));
     return most;
   }
   double left_of(std::uint32_t bent) const { return bent_[bent].part() * bent_[bent].most; }
@@ -282,6 +308,7 @@ class HighOrder {
       for (const std::uint32_t e : edge_of_[t])
         if (has_changed(bent_of_edge_[e])) moves = true, place_edge(e);
       for (const std::uint32_t f : faces_.of_tet[t]) moves |= has_changed(bent_of_face_[f]);
+      moves |= has_changed(bent_of_tet(t));
       if (moves) touched.push_back(t);
     }
     for (const TetIndex t : touched)
@@ -298,18 +325,18 @@ class HighOrder {
   TetFaces faces_;
   std::vector<std::array<std::uint32_t, 6>> edge_of_;  ///< per tet
   TetEdges edges_;
-  std::vector<Bent> bent_;      ///< edges, then faces
-  std::size_t bent_edges_ = 0;  ///< so many of them
-  std::vector<std::uint32_t> bent_of_edge_, bent_of_face_;
+  std::vector<Bent> bent_;                       ///< edges, then faces, then elements
+  std::size_t bent_edges_ = 0, bent_faces_ = 0;  ///< so many; and those before elements
+  std::vector<std::uint32_t> bent_of_edge_, bent_of_face_, bent_of_tet_;
   std::vector<TetIndex> bent_tets_;
 };
 
 }  // namespace
 
-void add_high_order(TetMesh& mesh, int order, const Bends& bends, SecondOrderSummary& summary,
-                    const RunContext& context) {
-  HighOrder high(mesh, order, bends);
-  high.settle(context);
+void add_high_order(TetMesh& mesh, int order, std::span<const VertexIndex> below, Bends bends,
+                    SecondOrderSummary& summary, const RunContext& context) {
+  HighOrder high(mesh, order, below, std::move(bends));
+  high.make_good(context);
   high.count(summary);
 }
 

@@ -8,6 +8,7 @@
 #include "base/geometry/tet_lattice.h"
 #include "base/mesh/face_table.h"
 #include "base/mesh/quadratic_nodes.h"
+#include "improve/curved/easing.h"
 
 #include <algorithm>
 #include <array>
@@ -24,25 +25,32 @@ namespace {
 // Elements above this are left as they are.
 constexpr double kWellShaped = 0.3;
 constexpr int kSweepsOfNodes = 2;
+// Milliseconds each: all that edges and faces would have to go back for, and of the others one in so many elements.
+constexpr std::size_t kOthersOneIn = 200;
 /// Steps in parts of the shortest edge of the element: a try with each, then half of it.
 constexpr double kFirstStepOfNodes = 0.1;
 constexpr int kStepsOfNodes = 4;
 
 class InnerNodes {
  public:
-  explicit InnerNodes(TetMesh& mesh) : mesh_(mesh), each_(mesh.high_nodes_per_tet()) {}
+  InnerNodes(TetMesh& mesh, double least) : mesh_(mesh), least_(least), each_(mesh.high_nodes_per_tet()) {}
 
   void run(const RunContext& context) {
     find_poor();
     if (poor_.empty()) return;
     find_fixed();
     gather();
-    for (int sweep = 0; sweep < kSweepsOfNodes; ++sweep)
-      for (const TetIndex t : poor_) {
+    for (int sweep = 0; sweep < kSweepsOfNodes; ++sweep) {
+      std::erase(poor_, kNone);
+      for (TetIndex& t : poor_) {
         context.check();
+        bool moves = false;
         for (std::size_t k = 0; k < each_; ++k)
-          if (const VertexIndex v = mesh_.high_nodes[t * each_ + k]; !is_fixed_[v]) move(v, shortest_edge(t));
+          if (const VertexIndex v = mesh_.high_nodes[t * each_ + k]; !is_fixed_[v]) moves |= move(v, shortest_edge(t));
+        // Where nothing moved nothing will.
+        if (!moves) t = kNone;
       }
+    }
   }
 
  private:
@@ -60,6 +68,9 @@ class InnerNodes {
     for (TetIndex t = 0; t < all.size(); ++t)
       if (all[t] < kWellShaped) poor_.push_back(t);
     std::ranges::stable_sort(poor_, {}, [&](TetIndex t) { return all[t]; });
+    const auto others = std::ranges::partition_point(poor_, [&](TetIndex t) { return all[t] < kLeastScaledJacobian; });
+    const std::size_t most = static_cast<std::size_t>(others - poor_.begin()) + mesh_.tets.size() / kOthersOneIn;
+    poor_.resize(std::min(poor_.size(), most));
   }
 
   /// Nodes on walls.
@@ -102,29 +113,43 @@ class InnerNodes {
     return shortest;
   }
 
-  double worst_at(VertexIndex v) const {
+  /// The least of the elements at a node; of one that is not above `enough` no other is asked, and it is asked first
+  /// the next time.
+  double worst_at(VertexIndex v, double enough) {
+    const std::span<TetIndex> tets = at_[place_[v]];
     double worst = 1;
-    for (const TetIndex t : at_[place_[v]]) worst = std::min(worst, scaled(t));
+    for (TetIndex& t : tets) {
+      worst = std::min(worst, scaled(t));
+      if (worst > enough) continue;
+      std::swap(t, tets.front());
+      break;
+    }
     return worst;
   }
 
-  void move(VertexIndex v, double edge) {
-    double worst = worst_at(v), step = kFirstStepOfNodes * edge;
+  /// Whether it did.
+  bool move(VertexIndex v, double edge) {
+    bool moves = false;
+    double worst = worst_at(v, -HUGE_VAL), step = kFirstStepOfNodes * edge;
+    if (worst < least_) return false;
     for (int i = 0; i < kStepsOfNodes && worst < kWellShaped; ++i, step /= 2)
       for (int axis = 0; axis < 3; ++axis)
         for (const double by : {step, -step}) {
           const Vec3 before = mesh_.points[v];
           mesh_.points[v][axis] += by;
-          const double now = worst_at(v);
+          const double now = worst_at(v, worst);
           if (now > worst) {
             worst = now;
+            moves = true;
             break;
           }
           mesh_.points[v] = before;
         }
+    return moves;
   }
 
   TetMesh& mesh_;
+  double least_;
   std::size_t each_;
   std::vector<TetIndex> poor_;  ///< the worst first
   std::vector<char> is_fixed_;
@@ -134,8 +159,8 @@ class InnerNodes {
 
 }  // namespace
 
-void raise_worst_elements(TetMesh& mesh, const RunContext& context) {
-  InnerNodes(mesh).run(context);
+void raise_worst_elements(TetMesh& mesh, double least, const RunContext& context) {
+  InnerNodes(mesh, least).run(context);
 }
 
 }  // namespace octafront::curved

@@ -2,8 +2,10 @@
 
 #include "base/core/groups.h"
 #include "base/core/parallel.h"
+#include "base/mesh/face_table.h"
 
 #include <algorithm>
+#include <span>
 
 namespace octafront::curved {
 
@@ -59,6 +61,33 @@ TetEdges edges_of(const TetMesh& mesh, std::vector<std::array<std::uint32_t, 6>>
     }
   });
   return edges;
+}
+
+TetFaces faces_of(const TetMesh& mesh) {
+  struct FaceUse {
+    VertexIndex middle, high;
+    std::uint32_t half_face;
+  };
+  Groups<FaceUse> uses(mesh.points.size(), [&](const auto& add) {
+    for (std::uint32_t t = 0; t < mesh.tets.size(); ++t)
+      for (int i = 0; i < 4; ++i) {
+        const Triangle key = face_key(octafront::face_of(mesh.tets[t], i));
+        add(key[0], FaceUse{key[1], key[2], 4 * t + static_cast<std::uint32_t>(i)});
+      }
+  });
+  TetFaces faces;
+  faces.of_tet.resize(mesh.tets.size());
+  for (VertexIndex v = 0; v < uses.size(); ++v) {
+    const std::span<FaceUse> here = uses[v];
+    std::ranges::sort(here, {}, [](const FaceUse& u) { return std::array{u.middle, u.high, u.half_face}; });
+    for (std::size_t i = 0; i < here.size(); ++i) {
+      const auto& [middle, high, half_face] = here[i];
+      if (i == 0 || here[i - 1].middle != middle || here[i - 1].high != high)
+        faces.corners.push_back({v, middle, high});
+      faces.of_tet[half_face / 4][half_face % 4] = static_cast<std::uint32_t>(faces.corners.size() - 1);
+    }
+  }
+  return faces;
 }
 
 TetEdges add_straight_mid_nodes(TetMesh& mesh) {

@@ -2,6 +2,7 @@
 
 #include <octafront/tet_mesh.h>
 
+#include <array>
 #include <cstdint>
 #include <vector>
 
@@ -20,6 +21,14 @@ struct TetEdges {
 
 /// And which ones each tet has, in the order of kTetEdges.
 TetEdges edges_of(const TetMesh& mesh, std::vector<std::array<std::uint32_t, 6>>& of_tet);
+
+/// The faces of the tetrahedra, each once, their corners ascending; and which ones each tet has, by the corner
+/// opposite.
+struct TetFaces {
+  std::vector<Triangle> corners;  ///< ascending
+  std::vector<std::array<std::uint32_t, 4>> of_tet;
+};
+TetFaces faces_of(const TetMesh& mesh);
 
 /// Gives a linear mesh straight mid-side nodes: the one of edge e is points[corners + e].
 TetEdges add_straight_mid_nodes(TetMesh& mesh);

@@ -13,7 +13,7 @@
 #include "improve/curved/curved.h"
 #include "improve/curved/easing.h"
 #include "improve/curved/high_order.h"
-#include "improve/curved/inner_nodes.h"
+#include "improve/curved/kept_bends.h"
 #include "improve/curved/mid_nodes.h"
 #include "improve/curved/smooth_surface.h"
 
@@ -83,18 +83,16 @@ void prove(const TetMesh& mesh, SecondOrderSummary& summary, const RunContext& c
       first.tet, first.at.x, first.at.y, first.at.z, found.invalid));
 }
 
-constexpr const char* kNoHighLayers = "`order` 3 and 4 are not for meshes with boundary layers: take 2";
 constexpr const char* kNoHighPeriods = "`order` 3 and 4 are not for periodic meshes: take 2";
 
 /// Of a mesh whose corners are where they will be.
 void add_nodes(TetMesh& mesh, int order, std::span<const VertexIndex> below, curved::Bends& bends,
                SecondOrderSummary& summary, const RunContext& context) {
   if (order > 2) {
-    curved::add_high_order(mesh, order, bends, summary, context);
-    curved::raise_worst_elements(mesh, context);
+    curved::add_high_order(mesh, order, below, std::move(bends), summary, context);
   } else {
     const curved::TetEdges edges = curved::add_straight_mid_nodes(mesh);
-    curved::add_edges_above(below, edges, bends);
+    curved::add_edges_above(below, edges, order, bends);
     curved::bend_edges(mesh, edges, bends.edges, summary, context);
   }
   prove(mesh, summary, context);
@@ -187,6 +185,14 @@ SecondOrderSummary curve_to_geometry(TetMesh& mesh, const TrueGeometry& geometry
   return summary;
 }
 
+SecondOrderSummary curve_as_before(TetMesh& mesh, const TetMesh& before, int order, const RunContext& context) {
+  refuse_mid_nodes(mesh);
+  SecondOrderSummary summary;
+  curved::Bends bends = curved::kept_bends(mesh, before, order);
+  add_nodes(mesh, order, {}, bends, summary, context);
+  return summary;
+}
+
 double curved_volume(const TetMesh& mesh) {
   const std::vector<double> volumes = volumes_of_elements(mesh);
   return std::accumulate(volumes.begin(), volumes.end(), 0.0);
@@ -240,7 +246,6 @@ SecondOrderSummary make_second_order(TetMesh& mesh, const SurfaceMesh* surface, 
 SecondOrderSummary make_curved(TetMesh& mesh, int order, const SurfaceMesh* surface, double feature_angle,
                                const RunContext& context) {
   if (order < 2 || order > kMostOrder) throw OptionError(fmt::format("`order`: {} is none of 2, 3 and 4", order));
-  if (order > 2 && !mesh.wide_cells.empty()) throw OptionError(kNoHighLayers);
   if (order > 2 && !mesh.periods.empty()) throw OptionError(kNoHighPeriods);
   const ThreadLimit limit(context.threads);
   if (!surface) return add_straight_edges(mesh, order, context);
@@ -268,7 +273,9 @@ JacobianSummary check_jacobians(const TetMesh& mesh, const RunContext& context) 
   std::vector<Judged> judged(mesh.tets.size());
   parallel_for(judged.size(), [&](std::size_t t) { judged[t] = judge(mesh, static_cast<TetIndex>(t)); });
   constexpr std::size_t kListed = 10;
+  double sum = 0;
   for (TetIndex t = 0; t < judged.size(); ++t) {
+    sum += judged[t].scaled;
     if (summary.least_tet == kNone || judged[t].scaled < summary.least_scaled_jacobian) {
       summary.least_scaled_jacobian = judged[t].scaled;
       summary.least_tet = t;
@@ -281,6 +288,7 @@ JacobianSummary check_jacobians(const TetMesh& mesh, const RunContext& context) 
       summary.first.push_back(
           {t, centroid(mesh.points[a], mesh.points[b], mesh.points[c], mesh.points[d]), judged[t].scaled});
   }
+  if (!judged.empty()) summary.mean_scaled_jacobian = sum / static_cast<double>(judged.size());
   return summary;
 }
 

@@ -40,6 +40,8 @@ class TrueSearch {
     bends.too_far = static_cast<std::size_t>(std::count(too_far_.begin(), too_far_.end(), 1));
     for (VertexIndex v = 0; v < moved.size(); ++v)
       if (moved[v] && *moved[v] != Vec3{}) bends.corners.push_back({v, *moved[v]});
+    bulge_.assign(table_.size(), {});
+    if (order_ > 2) parallel_for(table_.size(), [&](std::size_t e) { bulge_[e] = bulge_of(e, moved); });
     std::vector<std::optional<NodeMoves>> bend(table_.size());
     parallel_for(table_.size(), [&](std::size_t e) { bend[e] = bend_of(e, moved); });
     for (std::size_t e = 0; e < bend.size(); ++e)
@@ -160,20 +162,47 @@ class TrueSearch {
     return patches;
   }
 
+  /// Where the corners will be; nothing if one stays away.
+  template <std::size_t kCorners>
+  std::optional<std::array<Vec3, kCorners>> places_of(const std::array<VertexIndex, kCorners>& corners,
+                                                      const std::vector<std::optional<Vec3>>& moved) const {
+    std::array<Vec3, kCorners> at;
+    for (std::size_t i = 0; i < kCorners; ++i) {
+      if (stays_away(corners[i], moved)) return std::nullopt;
+      at[i] = mesh_.points[corners[i]] + *moved[corners[i]];
+    }
+    return at;
+  }
+
+  /// Near `from` on the line of an edge, or else on a patch of it.
+  std::optional<Vec3> on_edge(const Patches& patches, Vec3 from, double size) const {
+    const auto on = on_line(patches, from, kMostTrueBend * size);
+    return on ? on : on_patch(patches, from);
+  }
+
+  /// How far the middle of an edge lies off the straight one's.
+  Vec3 bulge_of(std::size_t e, const std::vector<std::optional<Vec3>>& moved) const {
+    const auto ends = places_of(table_.edges[e], moved);
+    if (!ends) return {};
+    const double size = distance((*ends)[0], (*ends)[1]);
+    const Vec3 from = in_edge(2, 0).mean_of(*ends);
+    const auto on = on_edge(patches_of_edge(e), from, size);
+    return on && distance(*on, from) <= kMostTrueBend * size ? *on - from : Vec3{};
+  }
+
   std::optional<NodeMoves> bend_of(std::size_t e, const std::vector<std::optional<Vec3>>& moved) const {
-    const auto& [a, b] = table_.edges[e];
-    if (stays_away(a, moved) || stays_away(b, moved)) return std::nullopt;
+    const auto ends = places_of(table_.edges[e], moved);
+    if (!ends) return std::nullopt;
     const Patches patches = patches_of_edge(e);
-    const std::array<Vec3, 2> ends{mesh_.points[a] + *moved[a], mesh_.points[b] + *moved[b]};
-    const double size = distance(ends[0], ends[1]);
+    const double size = distance((*ends)[0], (*ends)[1]);
     NodeMoves by{};
     double most = 0;
     for (std::size_t k = 0; k < nodes_in_edge(order_); ++k) {
-      const Vec3 from = in_edge(order_, k).mean_of(ends);
-      auto on = on_line(patches, from, kMostTrueBend * size);
-      if (!on) on = on_patch(patches, from);
+      const NodePlace<2> place = in_edge(order_, k);
+      const Vec3 straight = place.mean_of(*ends);
+      const auto on = on_edge(patches, straight + part_of_parabola(order_) * place.on_parabolas({&bulge_[e], 1}), size);
       if (!on) return std::nullopt;
-      by[k] = *on - from;
+      by[k] = *on - straight;
       most = std::max(most, length(by[k]) / size);
     }
     if (!(most > kStraightTrueBend && most <= kMostTrueBend)) return std::nullopt;
@@ -182,18 +211,18 @@ class TrueSearch {
 
   std::optional<NodeMoves> bend_of_face(std::size_t f, const std::vector<std::optional<Vec3>>& moved) const {
     const Triangle corners = face_key(faces_[f]);
-    std::array<Vec3, 3> at;
-    for (std::size_t i = 0; i < 3; ++i) {
-      if (stays_away(corners[i], moved)) return std::nullopt;
-      at[i] = mesh_.points[corners[i]] + *moved[corners[i]];
-    }
-    const double size = std::max({distance(at[0], at[1]), distance(at[1], at[2]), distance(at[2], at[0])});
+    const auto at = places_of(corners, moved);
+    if (!at) return std::nullopt;
+    const auto& [a, b, c] = *at;
+    const double size = std::max({distance(a, b), distance(b, c), distance(c, a)});
+    const std::array<Vec3, 3> bulges = bulges_of_face(table_, bulge_, corners);
     NodeMoves by{};
     for (std::size_t k = 0; k < nodes_in_face(order_); ++k) {
-      const Vec3 from = in_face(order_, k).mean_of(at);
-      const auto on = on_patch({patch_[f]}, from);
-      if (!on || !(distance(*on, from) <= kMostTrueBend * size)) return std::nullopt;
-      by[k] = *on - from;
+      const NodePlace<3> place = in_face(order_, k);
+      const Vec3 straight = place.mean_of(*at);
+      const auto on = on_patch({patch_[f]}, straight + part_of_parabola(order_) * place.on_parabolas(bulges));
+      if (!on || !(distance(*on, straight) <= kMostTrueBend * size)) return std::nullopt;
+      by[k] = *on - straight;
     }
     return by;
   }
@@ -207,6 +236,7 @@ class TrueSearch {
   std::vector<Patches> patches_of_;  ///< per vertex
   std::vector<double> shortest_;     ///< edge at a vertex
   std::vector<char> too_far_;        ///< per vertex
+  std::vector<Vec3> bulge_;          ///< per edge; of orders above 2
 };
 
 }  // namespace

@@ -1,6 +1,7 @@
 #include <octafront/adapt.h>
 #include <octafront/error.h>
 #include <octafront/named_groups.h>
+#include <octafront/repair.h>
 #include <octafront/second_order.h>
 #include <octafront/validity.h>
 
@@ -9,6 +10,7 @@
 #include "adapt/schedule/adapt_mesh.h"
 #include "adapt/schedule/rim_metric.h"
 #include "adapt/schedule/section.h"
+#include "improve/curved/curved.h"
 #include "pipeline/stages/adapt_section.h"
 #include "pipeline/stages/adapting.h"
 #include "pipeline/stages/kept_items.h"
@@ -56,10 +58,10 @@ TetMesh linear_and_adaptable(const TetMesh& mesh, Run& run) {
   make_linear(given);
   run.stage("check of the input", [&](const Stage& stage) {
     require_adaptable(given, run);
-    if (mesh.order() > 1)
+    if (mesh.order() > 1 && run.options.order == 1)
       stage.note(
-          fmt::format("elements of order {} are taken as linear ones, without their further nodes, and stay so: "
-                      "`octafront convert --order {}` adds nodes to what is written",
+          fmt::format("elements of order {} are taken as linear ones, without their further nodes, and stay so; "
+                      "`order` {} curves the new ones along the old walls",
                       mesh.order(), mesh.order()));
   });
   return given;
@@ -90,8 +92,31 @@ void divide_bridges_of(const TetMesh& given, const adapt::MetricField& metric, A
   result.after = summary_of(adapt::fit_of(result.mesh, metric));
 }
 
-AdaptedMesh adapt_by(TetMesh& given, const adapt::MetricField& wanted, const Domain* surface, Run& run) {
+/// On the triangles of the surface that was given, else on the walls as they were, curved or not.
+void raise_order_of(const TetMesh& before, const Domain* surface, AdaptedMesh& result, Run& run) {
+  const int order = run.options.order;
+  if (order < 2) return;
+  run.stage(stage_of_order(order), [&](const Stage& stage) {
+    const double angle = run.options.surface.angle_of_features();
+    const KnownSurface walls(
+        surface ? repair_surface(surface->surface, run.context()).surface : walls_with_nodes(before), angle);
+    const std::vector<Edge> lines = detect_features(boundary_of(result.mesh), angle).edges;
+    run.report.second_order = curve_to_surface(result.mesh, lines, walls, angle, {}, {}, order, stage.context());
+    count_edges(run.report.second_order, stage);
+  });
+  result.old_of_new.resize(result.mesh.points.size(), kNone);
+}
+
+void refuse_order_of_parts(const Options& options) {
+  if (options.order > 1 && !options.adapt.only.empty())
+    throw OptionError("`order` and `only` do not go together: what is outside keeps its bits, and stays linear");
+}
+
+/// `given`: the linear mesh of `before`.
+AdaptedMesh adapt_by(TetMesh& given, const TetMesh& before, const adapt::MetricField& wanted, const Domain* surface,
+                     Run& run) {
   AdaptedMesh result;
+  refuse_order_of_parts(run.options);
   const double diagonal = bounding_box(given.points).diagonal();
   const auto home = given_surface(surface, diagonal, run);
   adapt::AdaptRules rules = rules_of(run.options, diagonal, home ? &*home : nullptr);
@@ -103,11 +128,13 @@ AdaptedMesh adapt_by(TetMesh& given, const adapt::MetricField& wanted, const Dom
   std::optional<adapt::RimMetric> rim;
   if (!kept.faces.empty()) rim.emplace(given, kept.faces, wanted);
   const adapt::MetricField& metric = rim ? *rim : wanted;
-  run.report.input_volume = enclosed_volume(boundary_of(given));
+  const bool stays_curved = before.order() > 1 && run.options.order > 1;
+  run.report.input_volume = stays_curved ? curved_volume(before) : enclosed_volume(boundary_of(given));
   const bool all = run.options.adapt.only.empty();
   (all ? adapt_whole : adapt_section)(given, metric, rules, result, run);
   drop_kept_items(result.mesh, kept);
   divide_bridges_of(given, metric, result, run);
+  raise_order_of(before, surface, result, run);
   run.stage("summary", [&](const Stage& stage) {
     tell_fit(result.after, stage);
     tell_unmet(result.after, result.deviation, surface != nullptr, stage);
@@ -128,14 +155,14 @@ AdaptedMesh adapt_existing(const TetMesh& mesh, const Options& options, const Ru
   Run run(options, context);
   TetMesh given = linear_and_adaptable(mesh, run);
   const adapt::SizeMetric metric(sizes_for(boundary_of(given), run));
-  return adapt_by(given, metric, surface, run);
+  return adapt_by(given, mesh, metric, surface, run);
 }
 
 AdaptedMesh adapt_to_metric(const TetMesh& mesh, const MetricFunction& metric, const Options& options,
                             const RunContext& context, const Domain* surface) {
   Run run(options, context);
   TetMesh given = linear_and_adaptable(mesh, run);
-  return adapt_by(given, MetricOfFunction(metric), surface, run);
+  return adapt_by(given, mesh, MetricOfFunction(metric), surface, run);
 }
 
 AdaptedMesh adapt_to_metric(const TetMesh& mesh, const MetricMesh& metric, const Options& options,
@@ -143,7 +170,7 @@ AdaptedMesh adapt_to_metric(const TetMesh& mesh, const MetricMesh& metric, const
   Run run(options, context);
   const adapt::BackgroundMetric field(metric);
   TetMesh given = linear_and_adaptable(mesh, run);
-  return adapt_by(given, field, surface, run);
+  return adapt_by(given, mesh, field, surface, run);
 }
 
 }  // namespace octafront

@@ -32,6 +32,8 @@ namespace {
 SurfaceMesh tidied_input(const SurfaceMesh& given, Run& run) {
   if (!run.options.adapt.only.empty())
     throw OptionError("`only` is for meshes of tetrahedra: a surface alone is adapted as a whole");
+  if (run.options.order > 1)
+    throw OptionError("`order` is for meshes of tetrahedra: a surface alone has flat triangles");
   if (run.options.require.angle) throw OptionError("`require_angle` is for meshes of tetrahedra");
   return run.stage("check of the input", [&](const Stage& stage) {
     RepairedSurface tidy = repair_surface(given, stage.context());

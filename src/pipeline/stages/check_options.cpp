@@ -28,8 +28,6 @@ void check_options(const Options& options) {
       !surface.volume_tolerance || (!keeps_surface(options) && traits_of(options.method).has_front),
       "`volume_tolerance` makes elements of the surface smaller: it cannot be given where the input's triangles are "
       "kept, nor with a method that makes no surface of its own sizes");
-  require(options.order < 3 || (options.layers.count == 0 && options.periodic.empty()),
-          "`order` 3 and 4 go with neither `layers` nor `periodic` yet: take 2");
   check_layer_options(options);
   check_shell_options(options);
   check_periodic_options(options);

@@ -136,13 +136,16 @@ void tell_lost_nodes(const std::vector<NamedSet>& before, const TetMesh& mesh, c
   }
 }
 
-void raise_order(TetMesh& mesh, const Ground* ground, Run& run) {
-  if (run.options.order < 2) return;
-  run.stage("second order", [&](const Stage& stage) {
+/// On the surface where one is given, else as the mesh was `before`.
+void raise_order(TetMesh& mesh, const TetMesh& before, const Ground* ground, Run& run) {
+  const int order = run.options.order;
+  if (order < 2) return;
+  run.stage(stage_of_order(order), [&](const Stage& stage) {
     run.report.second_order =
         ground ? curve_to_surface(mesh, ground->of_mesh.edges, ground->surface, run.options.surface.angle_of_features(),
-                                  {}, paired_vertices(mesh), run.options.order, stage.context())
-               : add_straight_edges(mesh, run.options.order, stage.context());
+                                  {}, paired_vertices(mesh), order, stage.context())
+        : before.order() > 1 ? curve_as_before(mesh, before, order, stage.context())
+                             : add_straight_edges(mesh, order, stage.context());
     count_edges(run.report.second_order, stage);
   });
 }
@@ -159,9 +162,11 @@ Improved improve_existing(const TetMesh& mesh, const Options& options, const Sur
   run.stage("check of the input", [&](const Stage& stage) { require_valid(result.mesh, stage.context()); });
   if (mesh.order() > options.order)
     run.report.stages.back().notes.emplace_back(
-        fmt::format("nodes behind the corners are left out; `order` {} makes new ones", mesh.order()));
+        fmt::format("nodes behind the corners are left out; `order` {} keeps curved walls", mesh.order()));
+  if (options.order > 2 && !mesh.periodic_nodes.empty())
+    throw OptionError("`order` 3 and 4 are not for periodic meshes that are improved: take 2, or mesh anew");
   result.before = summarize_quality(mesh);
-  run.report.input_volume = enclosed_volume(boundary_of(mesh));
+  run.report.input_volume = options.order > 1 ? curved_volume(mesh) : enclosed_volume(boundary_of(mesh));
   refuse_sizes_required(options.require, "improvement keeps the sizes that there are");
   std::optional<Ground> ground;
   if (surface && !improve::has_staying_elements(result.mesh))
@@ -187,7 +192,7 @@ Improved improve_existing(const TetMesh& mesh, const Options& options, const Sur
     tell_lost_nodes(sets, result.mesh, stage);
   });
   divide_bridges(result.mesh, run);
-  raise_order(result.mesh, ground ? &*ground : nullptr, run);
+  raise_order(result.mesh, mesh, ground ? &*ground : nullptr, run);
   pair_mid_nodes(result.mesh, run);
   check_result(result.mesh, nullptr, run);
   run.stage("summary", [&](const Stage& stage) {

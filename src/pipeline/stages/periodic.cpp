@@ -5,8 +5,10 @@
 
 #include "base/core/disjoint_sets.h"
 #include "base/core/wording.h"
+#include "base/geometry/curved_tet.h"
 #include "base/geometry/quadratic_tet.h"
-#include "base/mesh/edge_nodes.h"
+#include "base/mesh/quadratic_nodes.h"
+#include "improve/curved/face_nodes.h"
 #include "pipeline/stages/methods.h"
 #include "pipeline/stages/stages.h"
 #include "soup/periods/periods.h"
@@ -14,6 +16,8 @@
 
 #include <algorithm>
 #include <map>
+#include <optional>
+#include <span>
 #include <string>
 #include <utility>
 
@@ -63,7 +67,9 @@ using NodeLinks = std::vector<std::vector<std::array<VertexIndex, 2>>>;
 
 class LinkFinder {
  public:
-  LinkFinder(const TetMesh& mesh, const PeriodicCell& cell) : mesh_(mesh), cell_(cell), node_of_(mesh) {}
+  LinkFinder(const TetMesh& mesh, const PeriodicCell& cell) : mesh_(mesh), cell_(cell) {
+    if (mesh.order() > 1) nodes_.emplace(mesh);
+  }
 
   NodeLinks run() const {
     NodeLinks links(static_cast<std::size_t>(cell_.periods()));
@@ -118,9 +124,10 @@ class LinkFinder {
         original_of[copy[i]] = t[i];
       }
       if (!std::binary_search(known.begin(), known.end(), face_key(copy))) refuse(t[0], k);
-      if (!mesh_.is_second_order()) continue;
-      const Triangle nodes = node_of_.of(t), their = node_of_.of(copy);
-      for (int i = 0; i < 3; ++i) original_of[their[i]] = nodes[i];
+      if (!nodes_) continue;
+      curved::visit_nodes_behind_corners(mesh_.order(), [&](const curved::FaceNodes::Weights& weights) {
+        original_of[nodes_->node(copy, weights)] = nodes_->node(t, weights);
+      });
     }
     if (originals.size() != copies.size()) refuse(originals.empty() ? copies[0][0] : originals[0][0], k);
     std::vector<std::array<VertexIndex, 2>> links;
@@ -136,20 +143,20 @@ class LinkFinder {
 
   const TetMesh& mesh_;
   const PeriodicCell& cell_;
-  const EdgeNodes node_of_;
+  std::optional<curved::FaceNodes> nodes_;  ///< of curved meshes
 };
 
-/// Mid-side nodes of faces where their originals lead.
-class MidNodes {
+/// Nodes of faces behind corners, where their originals lead.
+class NodesBehindCorners {
  public:
-  MidNodes(TetMesh& mesh, const PeriodicCell& cell)
-      : mesh_(mesh), cell_(cell), set_(mesh.points.size()), ends_(mesh.points.size(), Edge{kNone, kNone}) {
-    find_ends();
+  NodesBehindCorners(TetMesh& mesh, const PeriodicCell& cell)
+      : mesh_(mesh), cell_(cell), set_(mesh.points.size()), place_(mesh.points.size()) {
+    find_places();
     const NodeLinks links = LinkFinder(mesh, cell).run();
     std::vector<std::uint8_t> is_copy(mesh.points.size(), 0);
     for (std::size_t k = 0; k < links.size(); ++k)
       for (const auto& [copy, original] : links[k]) {
-        if (ends_[copy][0] == kNone) continue;
+        if (place_[copy].count == 0) continue;
         set_.join(copy, original);
         links_.push_back({static_cast<int>(k), copy, original});
         is_copy[copy] = 1;
@@ -168,7 +175,7 @@ class MidNodes {
       straightened += now;
       follow();
     }
-    stage.count("edges of periodic faces straightened", static_cast<double>(straightened));
+    stage.count("nodes of periodic faces straightened", static_cast<double>(straightened));
   }
 
  private:
@@ -177,23 +184,50 @@ class MidNodes {
     VertexIndex copy, original;
   };
 
-  /// The corners that each mid-side node lies between.
-  void find_ends() {
-    for (TetIndex t = 0; t < mesh_.tets.size(); ++t)
-      for (std::size_t e = 0; e < 6; ++e) {
-        const auto& [i, j] = kTetEdges[e];
-        ends_[mesh_.mid_nodes[t][e]] = {mesh_.tets[t][static_cast<std::size_t>(i)],
-                                        mesh_.tets[t][static_cast<std::size_t>(j)]};
-      }
+  /// The corners that a node lies between, and how it counts them.
+  struct Place {
+    std::array<VertexIndex, 3> corners{};
+    std::array<int, 3> weights{};
+    std::size_t count = 0;
+  };
+
+  void find_places() {
+    const curved::FaceNodes nodes(mesh_);
+    for (const Triangle& face : mesh_.boundary)
+      curved::visit_nodes_behind_corners(mesh_.order(), [&](const curved::FaceNodes::Weights& weights) {
+        Place place;
+        for (std::size_t i = 0; i < 3; ++i)
+          if (weights[i] > 0) place.corners[place.count] = face[i], place.weights[place.count++] = weights[i];
+        place_[nodes.node(face, weights)] = place;
+      });
   }
 
-  /// Where an original near p lies: in the low faces that both ends of its edge are in.
+  /// Where an original near p lies: in the low faces that all corners of its edge or face are in.
   Vec3 settled(Vec3 p, VertexIndex node) const {
     if (!cell_.is_box()) return cell_.on_grid(p);
-    const Vec3 a = mesh_.points[ends_[node][0]], b = mesh_.points[ends_[node][1]];
+    const Place& place = place_[node];
     for (int k = 0; k < cell_.periods(); ++k)
-      if (cell_.is_low(a, k) && cell_.is_low(b, k)) p = cell_.to_low(p, k);
+      if (std::all_of(place.corners.begin(), place.corners.begin() + static_cast<std::ptrdiff_t>(place.count),
+                      [&](VertexIndex v) { return cell_.is_low(mesh_.points[v], k); }))
+        p = cell_.to_low(p, k);
     return p;
+  }
+
+  Vec3 straight(VertexIndex node) const {
+    const Place& place = place_[node];
+    Vec3 sum;
+    for (std::size_t i = 0; i < place.count; ++i) sum += place.weights[i] * mesh_.points[place.corners[i]];
+    return sum / mesh_.order();
+  }
+
+  std::span<const VertexIndex> behind_corners(TetIndex t) const {
+    if (mesh_.is_second_order()) return mesh_.mid_nodes[t];
+    return std::span(mesh_.high_nodes).subspan(t * mesh_.high_nodes_per_tet(), mesh_.high_nodes_per_tet());
+  }
+  bool is_valid(TetIndex t) const {
+    std::array<Vec3, 35> room;
+    if (mesh_.is_second_order()) return has_positive_jacobian(quadratic_nodes(mesh_, t));
+    return validity_of(mesh_.order(), nodes_of_tet(mesh_, t, room)) == Validity::kValid;
   }
 
   /// Copies come to where their originals lead: after as many rounds as there are periods all are there.
@@ -206,19 +240,16 @@ class MidNodes {
     std::vector<std::uint8_t> is_on_face(mesh_.points.size(), 0), is_bad(mesh_.points.size(), 0);
     for (const Link& link : links_) is_on_face[link.copy] = is_on_face[link.original] = 1;
     for (TetIndex t = 0; t < mesh_.tets.size(); ++t) {
-      const auto& mid = mesh_.mid_nodes[t];
-      if (std::none_of(mid.begin(), mid.end(), [&](VertexIndex v) { return is_on_face[v] != 0; })) continue;
-      QuadraticTet nodes;
-      for (int i = 0; i < 4; ++i) nodes[i] = mesh_.points[mesh_.tets[t][i]];
-      for (int i = 0; i < 6; ++i) nodes[4 + i] = mesh_.points[mid[i]];
-      if (has_positive_jacobian(nodes)) continue;
-      for (const VertexIndex v : mid)
+      const auto behind = behind_corners(t);
+      if (std::none_of(behind.begin(), behind.end(), [&](VertexIndex v) { return is_on_face[v] != 0; })) continue;
+      if (is_valid(t)) continue;
+      for (const VertexIndex v : behind)
         if (is_on_face[v]) is_bad[set_.find(v)] = 1;
     }
     std::uint64_t changed = 0;
     for (const auto& [set, node] : first_) {
       if (!is_bad[set]) continue;
-      const Vec3 to = settled((mesh_.points[ends_[node][0]] + mesh_.points[ends_[node][1]]) * 0.5, node);
+      const Vec3 to = settled(straight(node), node);
       changed += mesh_.points[node] != to;
       mesh_.points[node] = to;
     }
@@ -227,9 +258,9 @@ class MidNodes {
 
   TetMesh& mesh_;
   const PeriodicCell& cell_;
-  DisjointSets set_;                            ///< of mid-side nodes that are copies
-  std::vector<Edge> ends_;                      ///< per node
-  std::vector<Link> links_;                     ///< of mid-side nodes
+  DisjointSets set_;                            ///< of nodes that are copies
+  std::vector<Place> place_;                    ///< per node; of corners, and what is inside, none
+  std::vector<Link> links_;                     ///< of nodes behind corners
   std::map<std::uint32_t, VertexIndex> first_;  ///< per set the node that is no copy
 };
 
@@ -328,7 +359,7 @@ std::vector<VertexIndex> vertices_on_faces(const SurfaceMesh& surface, const Per
 }
 
 void pair_mid_nodes(TetMesh& mesh, const PeriodicCell& cell, const Stage& stage) {
-  if (cell.is_periodic() && mesh.is_second_order()) MidNodes(mesh, cell).run(stage);
+  if (cell.is_periodic() && mesh.order() > 1) NodesBehindCorners(mesh, cell).run(stage);
 }
 
 void pair_nodes(const Prepared& input, TetMesh& mesh, Run& run) {

@@ -511,7 +511,7 @@ void improve_elements(const Prepared& input, Filled& filled, Run& run, const Imp
 
 void raise_order(const Prepared& input, Filled& filled, Run& run) {
   if (run.options.order < 2) return;
-  run.stage("second order", [&](const Stage& stage) {
+  run.stage(stage_of_order(run.options.order), [&](const Stage& stage) {
     const int order = run.options.order;
     TetMesh& mesh = filled.mesh;
     Remeshed& boundary = filled.boundary;
@@ -532,6 +532,10 @@ void name_patches(const Prepared& input, Filled& filled) {
   if (input.closed.patch == kNone) return;
   name_closed_patch(input.closed, input.surface.tree(), filled.mesh);
   name_closed_patch(input.closed, input.surface.tree(), filled.boundary.surface);
+}
+
+const char* stage_of_order(int order) {
+  return order == 2 ? "second order" : order == 3 ? "order 3" : "order 4";
 }
 
 void count_edges(const SecondOrderSummary& made, const Stage& stage) {

@@ -123,6 +123,8 @@ void name_patches(const Prepared& input, Filled& filled);
 
 /// Enters what became of the edges into the stage's report.
 void count_edges(const SecondOrderSummary& made, const Stage& stage);
+/// What the stage is called that gives elements this order.
+const char* stage_of_order(int order);
 
 /// Throws MeshingError if the mesh breaks a law of first_defect(), or its boundary is not `surface` where one is given.
 void check_result(const TetMesh& mesh, const SurfaceMesh* surface, Run& run);

@@ -4,8 +4,10 @@
 #include "base/core/flat_map.h"
 #include "base/core/parallel.h"
 #include "base/core/wording.h"
+#include "base/geometry/curved_tet.h"
 #include "base/mesh/adjacency.h"
 #include "base/mesh/face_table.h"
+#include "base/mesh/quadratic_nodes.h"
 #include "base/places/places.h"
 #include "report/picture/scales.h"
 #include "report/picture/scene.h"
@@ -237,7 +239,7 @@ class MeshScene {
   void finish() {
     using Edges = PictureOptions::Edges;
     if (options_.edges != Edges::kOff) find_features(scene_, corners_, parts_, is_outer_);
-    if (mesh_.is_second_order())
+    if (mesh_.order() > 1)
       bend();
     else if (options_.edges == Edges::kFeatures)
       smooth_normals(scene_, corners_);
@@ -255,38 +257,52 @@ class MeshScene {
                                                 : patch_label(names, p));
   }
 
-  VertexIndex mid_node(std::size_t t, VertexIndex a, VertexIndex b) const {
-    for (std::size_t e = 0; e < 6; ++e)
-      if (sorted_edge(mesh_.tets[t][kTetEdges[e][0]], mesh_.tets[t][kTetEdges[e][1]]) == sorted_edge(a, b))
-        return mesh_.mid_nodes[t][e];
-    return a;
-  }
-  /// Faces of six nodes that bend become sixteen flat triangles.
+  /// Faces that bend become sixteen flat triangles.
   void bend() {
     std::vector<SceneTriangle> flat;
     flat.swap(scene_.triangles);
-    for (std::size_t k = 0; k < flat.size(); ++k) {
-      std::array<Vec3, 3> bends{};
-      for (std::size_t i = 0; i < 3; ++i)
-        bends[i] = mesh_.points[mid_node(tets_[k], corners_[k][i], corners_[k][(i + 1) % 3])] -
-                   0.5 * (flat[k].at[i] + flat[k].at[(i + 1) % 3]);
-      add_bent(flat[k], bends);
-    }
+    for (std::size_t k = 0; k < flat.size(); ++k) add_bent(k, flat[k]);
   }
-  /// On edge i, and so within, x is flat + 4 l_i l_(i+1) times its bend.
-  void add_bent(const SceneTriangle& flat, const std::array<Vec3, 3>& bends) {
+  /// The places of face k whose barycentric coordinates are quarters: [a][b] of the second corner and the third.
+  using Quarters = std::array<std::array<Vec3, 5>, 5>;
+  Quarters places_of(std::size_t k) const {
+    std::array<Vec3, 35> room;
+    const std::span<const Vec3> nodes = nodes_of_tet(mesh_, static_cast<TetIndex>(tets_[k]), room);
+    const Tet& tet = mesh_.tets[tets_[k]];
+    std::array<std::size_t, 3> corner{};
+    for (std::size_t i = 0; i < 3; ++i)
+      corner[i] = static_cast<std::size_t>(std::ranges::find(tet, corners_[k][i]) - tet.begin());
+    Quarters places;
+    for (std::size_t a = 0; a <= 4; ++a)
+      for (std::size_t b = 0; a + b <= 4; ++b) {
+        std::array<double, 4> at{};
+        const double quarter = 0.25 * mesh_.order();
+        at[corner[0]] = static_cast<double>(4 - a - b) * quarter;
+        at[corner[1]] = static_cast<double>(a) * quarter;
+        at[corner[2]] = static_cast<double>(b) * quarter;
+        places[a][b] = place_in_tet(mesh_.order(), nodes, at);
+      }
+    return places;
+  }
+  static bool is_flat(const SceneTriangle& flat, const Quarters& places) {
     constexpr double kStraight = 1e-3;  // of an edge: nobody sees it
-    if (std::max({length(bends[0]), length(bends[1]), length(bends[2])}) <
-        kStraight * distance(flat.at[0], flat.at[1])) {
+    double most = 0;
+    for (std::size_t a = 0; a <= 4; ++a)
+      for (std::size_t b = 0; a + b <= 4; ++b) {
+        const Vec3 p = (static_cast<double>(4 - a - b) * flat.at[0] + static_cast<double>(a) * flat.at[1] +
+                        static_cast<double>(b) * flat.at[2]) *
+                       0.25;
+        most = std::max(most, distance(places[a][b], p));
+      }
+    return most < kStraight * distance(flat.at[0], flat.at[1]);
+  }
+  void add_bent(std::size_t k, const SceneTriangle& flat) {
+    const Quarters places = places_of(k);
+    if (is_flat(flat, places)) {
       scene_.triangles.push_back(flat);
       return;
     }
-    const auto point = [&](int a, int b) {
-      const std::array<double, 3> l{(4 - a - b) / 4.0, a / 4.0, b / 4.0};
-      Vec3 p;
-      for (std::size_t i = 0; i < 3; ++i) p += l[i] * flat.at[i] + 4 * l[i] * l[(i + 1) % 3] * bends[i];
-      return p;
-    };
+    const auto point = [&](int a, int b) { return places[static_cast<std::size_t>(a)][static_cast<std::size_t>(b)]; };
     // Only what lies on an edge of the face has its line.
     const auto on = [&](bool is_on, std::size_t edge) { return is_on ? flat.lines[edge] : EdgeLine::kAbsent; };
     for (int a = 0; a < 4; ++a)

@@ -42,8 +42,10 @@ std::string to_json(const JacobianSummary& found) {
   for (const InvalidElement& e : found.first)
     first.push_back({{"number", e.tet}, {"at", place(e.at)}, {"scaled_jacobian", e.scaled_jacobian}});
   return Json{{"least_scaled_jacobian", found.least_scaled_jacobian},
+              {"mean_scaled_jacobian", found.mean_scaled_jacobian},
               {"least_tet", found.least_tet},
               {"invalid", found.invalid},
+              {"undecided", found.undecided},
               {"first", first}}
       .dump(2, ' ', false, Json::error_handler_t::replace);
 }

@@ -76,6 +76,19 @@ TEST(CurvedTet, HasTheJacobianOfItsMap) {
   }
 }
 
+TEST(CurvedTet, PlacesAreThoseOfTheMap) {
+  const Map map = [](Vec3 p) { return Vec3{p.x + 0.2 * p.y * p.y, p.y - 0.3 * p.x * p.z, p.z + 0.1 * p.x * p.x}; };
+  for (int order = 2; order <= kMostOrder; ++order) {
+    const std::vector<Vec3> nodes = nodes_by(order, map);
+    const double p = order;
+    EXPECT_LT(distance(place_in_tet(order, nodes, {0.4 * p, 0.3 * p, 0.2 * p, 0.1 * p}), map({0.3, 0.2, 0.1})), 1e-14);
+    for (std::size_t n = 0; n < nodes.size(); ++n) {
+      const TetLattice::Weights& w = tet_lattice(order).weights(n);
+      EXPECT_EQ(place_in_tet(order, nodes, {1.0 * w[0], 1.0 * w[1], 1.0 * w[2], 1.0 * w[3]}), nodes[n]);
+    }
+  }
+}
+
 TEST(CurvedTet, IsThatOfSecondOrder) {
   Random random(7);
   for (int i = 0; i < 100; ++i) {

@@ -1,5 +1,7 @@
+#include <octafront/adapt.h>
 #include <octafront/error.h>
 #include <octafront/generate.h>
+#include <octafront/improve_existing.h>
 #include <octafront/run_context.h>
 #include <octafront/second_order.h>
 #include <octafront/validity.h>
@@ -98,6 +100,19 @@ TEST(HighOrder, ABallOfFewElementsIsEased) {
   EXPECT_GT(made.curved, 0u);
 }
 
+TEST(HighOrder, ATorusOfFewElementsIsEasedAndProven) {
+  Options options;
+  for (const double size : {1.0, 0.6})
+    for (const int order : {3, 4}) {
+      options.size.size = size;
+      options.order = order;
+      const Result made = generate(testing::torus(64, 24), options);
+      EXPECT_EQ(check_jacobians(made.mesh).invalid, 0u);
+      EXPECT_GE(made.report.second_order.least_scaled_jacobian, 0.09) << size << " " << order;
+      EXPECT_NEAR(made.report.volume / (2 * std::numbers::pi * std::numbers::pi * 0.35 * 0.35), 1, 0.05);
+    }
+}
+
 TEST(HighOrder, WhatIsNotForItIsRefused) {
   TetMesh mesh = ball(0.8, 1);
   EXPECT_THROW(make_curved(mesh, 5), OptionError);
@@ -105,8 +120,8 @@ TEST(HighOrder, WhatIsNotForItIsRefused) {
   EXPECT_THROW(make_curved(mesh, 3), InputError);
   Options options;
   options.order = 3;
-  options.layers.count = 2;
-  EXPECT_THROW(generate(icosphere(3), options), OptionError);
+  options.adapt.only = "sphere:0,0,0,1";
+  EXPECT_THROW(adapt_existing(mesh, options), OptionError);
 }
 
 TEST(HighOrder, AMovedNodeIsFound) {
@@ -116,6 +131,62 @@ TEST(HighOrder, AMovedNodeIsFound) {
   const JacobianSummary found = check_jacobians(mesh);
   EXPECT_GT(found.invalid, 0u);
   EXPECT_TRUE(first_defect(mesh).has_value());
+}
+
+/// A ball in which an edge inside is bent through an element.
+TetMesh spoilt_ball(int order) {
+  TetMesh mesh = ball(0.5, order);
+  std::set<VertexIndex> outside;
+  for (const Triangle& t : mesh.boundary) outside.insert(t.begin(), t.end());
+  for (TetIndex t = 0; t < mesh.tets.size(); ++t) {
+    if (outside.contains(mesh.tets[t][0])) continue;
+    const VertexIndex node = order == 2 ? mesh.mid_nodes[t][0] : mesh.high_nodes[t * mesh.high_nodes_per_tet()];
+    mesh.points[node] += 0.9 * (mesh.points[mesh.tets[t][3]] - mesh.points[node]);
+    break;
+  }
+  return mesh;
+}
+
+TEST(HighOrder, ImprovementMendsAndKeepsWalls) {
+  for (const int order : {2, 3, 4}) {
+    const TetMesh spoilt = spoilt_ball(order);
+    EXPECT_GT(check_jacobians(spoilt).invalid, 0u);
+    Options options;
+    options.order = order;
+    const TetMesh mended = improve_existing(spoilt, options).mesh;
+    EXPECT_EQ(mended.order(), order);
+    EXPECT_EQ(first_defect(mended), std::nullopt);
+    EXPECT_EQ(check_jacobians(mended).invalid, 0u);
+    EXPECT_NEAR(curved_volume(mended), curved_volume(ball(0.5, order)), 1e-2 * std::pow(0.2, order));
+  }
+}
+
+TEST(HighOrder, AdaptedMeshesAreCurvedAlongTheirWalls) {
+  const TetMesh before = ball(0.5, 3);
+  Options options;
+  options.size.size = 0.35;
+  for (const int order : {1, 2, 4}) {
+    options.order = order;
+    const AdaptedMesh adapted = adapt_existing(before, options);
+    EXPECT_EQ(adapted.mesh.order(), order);
+    EXPECT_GT(adapted.mesh.tets.size(), before.tets.size());
+    EXPECT_EQ(first_defect(adapted.mesh), std::nullopt);
+    EXPECT_EQ(check_jacobians(adapted.mesh).invalid, 0u);
+    EXPECT_EQ(adapted.old_of_new.size(), adapted.mesh.points.size());
+    EXPECT_NEAR(curved_volume(adapted.mesh) / (4 * std::numbers::pi / 3), 1, order == 1 ? 0.06 : 1e-3) << order;
+  }
+}
+
+TEST(HighOrder, ImprovementChangesOrders) {
+  const TetMesh quadratic = ball(0.5, 2);
+  Options options;
+  options.order = 4;
+  const TetMesh quartic = improve_existing(quadratic, options).mesh;
+  EXPECT_EQ(quartic.order(), 4);
+  // The walls are the same polynomials.
+  EXPECT_NEAR(curved_volume(quartic), curved_volume(quadratic), 1e-12);
+  options.order = 1;
+  EXPECT_EQ(improve_existing(quadratic, options).mesh.order(), 1);
 }
 
 }  // namespace

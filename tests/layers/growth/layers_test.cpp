@@ -3,6 +3,7 @@
 
 #include <octafront/error.h>
 #include <octafront/generate.h>
+#include <octafront/second_order.h>
 #include <octafront/validity.h>
 
 #include "base/geometry/measures.h"
@@ -57,30 +58,6 @@ double volume_of(const TetMesh& mesh, std::uint32_t region) {
     if (mesh.region[t] == region) sum += signed_volume(mesh.points[a], mesh.points[b], mesh.points[c], mesh.points[d]);
   }
   return sum;
-}
-
-/// A pipe along z with flat ends, which are patches 1 and 2.
-SurfaceMesh pipe(int around, int along) {
-  SurfaceMesh s;
-  const auto at = [&](int i, int k) { return static_cast<VertexIndex>(k * around + (i % around + around) % around); };
-  for (int k = 0; k <= along; ++k)
-    for (int i = 0; i < around; ++i) {
-      const double turn = 2 * std::numbers::pi * i / around;
-      s.points.push_back({std::cos(turn), std::sin(turn), 4.0 * k / along});
-    }
-  const auto add = [&](Triangle t, std::uint32_t patch) { s.triangles.push_back(t), s.patch.push_back(patch); };
-  for (int k = 0; k < along; ++k)
-    for (int i = 0; i < around; ++i) {
-      add({at(i, k), at(i + 1, k), at(i + 1, k + 1)}, 0);
-      add({at(i, k), at(i + 1, k + 1), at(i, k + 1)}, 0);
-    }
-  const auto low = static_cast<VertexIndex>(s.points.size()), high = low + 1;
-  s.points.push_back({0, 0, 0});
-  s.points.push_back({0, 0, 4});
-  for (int i = 0; i < around; ++i)
-    add({low, at(i + 1, 0), at(i, 0)}, 1), add({high, at(i, along), at(i + 1, along)}, 2);
-  s.patch_names = {"wall", "inlet", "outlet"};
-  return s;
 }
 
 TEST(Layers, AreAsHighAsAskedOnSimpleBodies) {
@@ -404,15 +381,20 @@ TEST(Layers, GrowOutsideAsAShell) {
 }
 
 /// Nodes over a curved edge of the wall curve with it: thin elements stay as good as they were.
-TEST(Layers, SecondOrderCurvesThemWithTheirWall) {
+TEST(Layers, HigherOrdersCurveThemWithTheirWall) {
   LayersOptions asked;
   asked.count = 4;
   asked.first = 0.001;  // the wall bends ten times as far
-  const Result made = meshed(icosphere(4), asked, 0.3, 2);
-  EXPECT_EQ(first_defect(made.mesh), std::nullopt);
-  EXPECT_EQ(made.report.second_order.eased, 0u);
-  EXPECT_GT(made.report.second_order.largest_bend, 0.01);
-  EXPECT_NEAR(made.report.volume / (4 * std::numbers::pi / 3), 1, 0.002);
+  for (const int order : {2, 3, 4}) {
+    const Result made = meshed(icosphere(4), asked, 0.3, order);
+    EXPECT_EQ(made.mesh.order(), order);
+    EXPECT_EQ(first_defect(made.mesh), std::nullopt);
+    EXPECT_EQ(check_jacobians(made.mesh).invalid, 0u);
+    EXPECT_EQ(made.report.second_order.eased + made.report.second_order.eased_faces, 0u) << order;
+    EXPECT_GT(made.report.second_order.largest_bend, 0.01);
+    EXPECT_GT(made.report.second_order.least_scaled_jacobian, 0.5) << order;
+    EXPECT_NEAR(made.report.volume / (4 * std::numbers::pi / 3), 1, order == 2 ? 0.002 : 1e-4) << order;
+  }
 }
 
 /// Ends are hardly ever flat to the last bit.

@@ -1,6 +1,7 @@
 #include <octafront/error.h>
 #include <octafront/generate.h>
 #include <octafront/quality.h>
+#include <octafront/second_order.h>
 #include <octafront/validity.h>
 
 #include "support/complexes.h"
@@ -97,13 +98,22 @@ TEST(Periodic, SheetsEndOnBothFaces) {
   expect_same_faces(r.mesh, 1);
 }
 
-TEST(Periodic, SecondOrderPairsMidSideNodes) {
-  Options o = periodic(0.3, "xyz");
-  o.order = 2;
-  const Result r = generate(testing::cube(1), o);
-  EXPECT_EQ(first_defect(r.mesh), std::nullopt);
-  EXPECT_TRUE(r.mesh.is_second_order());
-  for (int axis = 0; axis < 3; ++axis) expect_same_faces(r.mesh, axis);
+TEST(Periodic, NodesBehindCornersArePaired) {
+  for (const int order : {2, 3, 4}) {
+    Options o = periodic(0.3, "xyz");
+    o.order = order;
+    const Result r = generate(testing::cube(1), o);
+    EXPECT_EQ(first_defect(r.mesh), std::nullopt);
+    EXPECT_EQ(r.mesh.order(), order);
+    for (int axis = 0; axis < 3; ++axis) expect_same_faces(r.mesh, axis);
+    Options along = o;
+    along.size.size = 0.4;
+    along.periodic.erase(0, 2);  // "z"
+    const Result pipe = generate(testing::pipe(48, 20), along);
+    EXPECT_EQ(check_jacobians(pipe.mesh).invalid, 0u);
+    EXPECT_GT(pipe.report.second_order.curved, 100u);
+    expect_same_faces(pipe.mesh, 2);
+  }
 }
 
 TEST(Periodic, QualityIsThatWithoutPeriods) {
