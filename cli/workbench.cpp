@@ -216,7 +216,7 @@ class Workbench {
   void stay(Response& response) {
     ++pages_;
     response.set_chunked_content_provider(
-        "text/plain",
+        "application/octet-stream",  // of text the library would keep back what it may compress better
         [this](std::size_t, DataSink& sink) {
           for (int i = 0; i < 5 && !is_ending_; ++i) std::this_thread::sleep_for(std::chrono::milliseconds(200));
           if (is_ending_) sink.done();

@@ -138,7 +138,11 @@ function extreme(points, k, of) {
 // --- picking
 
 /** Names of edges: the patches that meet there, as options call them. */
-const edgeOf = ({ patches: [a, b] }) => (a === b ? null : [now.surface.patches[a], now.surface.patches[b]].sort().join("|"));
+function edgeOf({ patches: [a, b] }) {
+  if (a === b) return null;
+  const both = [now.surface.patches[a], now.surface.patches[b]].sort();
+  return both.join(both.some((name) => name.includes("|")) ? " + " : "|");
+}
 function placesOfKind(kind) {
   const { surface } = now;
   if (kind === "face") return surface.patches.map((name, i) => ({ kind, name, colour: now.colours[i], count: faceCounts()[i] })).filter((place) => place.count > 0);
@@ -413,6 +417,7 @@ function showMesh(made) {
   byId("notes").replaceChildren();
   if (!made.mesh || !stage) return;
   stage.showMesh(made.mesh);
+  byId("step-look").scrollIntoView({ block: "start" });
   byId("shown").hidden = !now.surface;
   look.filter = null;
   byId("filter").checked = false;

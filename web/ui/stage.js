@@ -1,7 +1,7 @@
 // --- stage.js: the input and the mesh in 3D, by three.js; the camera is that of the report page.
 
 import {
-  BufferAttribute, BufferGeometry, Color, DirectionalLight, DoubleSide, HemisphereLight, LineBasicMaterial, LineSegments, Mesh, MeshLambertMaterial, PerspectiveCamera, Plane, Raycaster,
+  BufferAttribute, BufferGeometry, Color, ColorManagement, DirectionalLight, DoubleSide, HemisphereLight, LineBasicMaterial, LinearSRGBColorSpace, LineSegments, Mesh, MeshLambertMaterial, PerspectiveCamera, Plane, Raycaster,
   Scene, Vector2, Vector3, WebGLRenderer,
 } from "three";
 
@@ -28,6 +28,8 @@ const geometryOf = (attributes) => {
   return geometry;
 };
 
+ColorManagement.enabled = false;
+
 class Stage {
   constructor(canvas) {
     this.canvas = canvas;
@@ -37,10 +39,11 @@ class Stage {
       throw new Error("this browser cannot draw (no WebGL 2): picking by the lists, meshing and saving work");
     }
     this.renderer.localClippingEnabled = true;
+    this.renderer.outputColorSpace = LinearSRGBColorSpace; // colours are those of the legend
     this.scene = new Scene();
     this.eye = new PerspectiveCamera();
-    this.light = new DirectionalLight(0xffffff, 1.9);
-    this.scene.add(this.eye, new HemisphereLight(0xffffff, 0x9aa0a8, 1.5));
+    this.light = new DirectionalLight(0xffffff, 1.7);
+    this.scene.add(this.eye, new HemisphereLight(0xffffff, 0xb0b4ba, 1.6));
     this.eye.add(this.light);
     this.light.position.set(-0.2, 0.3, 1);
     this.scene.add(this.light.target);
@@ -291,7 +294,7 @@ class Stage {
     eye.updateMatrixWorld();
     this.uniforms.pixels.value = (height * ratio) / (2 * tangentOf(canvas));
     const paper = getComputedStyle(document.documentElement).getPropertyValue("--canvas").trim().split(/\s+/).map((c) => Number(c) / 255);
-    this.scene.background = new Color().setRGB(...paper, "srgb");
+    this.scene.background = new Color(...paper);
     this.renderer.render(this.scene, eye);
   }
 }
