@@ -393,7 +393,7 @@ std::filesystem::path workbench_page() {
   if (const char* named = std::getenv("OCTAFRONT_UI_PAGE")) return named;
   std::error_code ignored;
   const std::filesystem::path folder = this_program().parent_path(), name = "octafront-ui.html";
-  for (const std::filesystem::path& place : {folder / name, folder / "../share/octafront" / name, folder / "../../../ui" / name})
+  for (const std::filesystem::path& place : {folder / name, folder / "../share/octafront" / name, folder / "../../ui" / name})
     if (std::filesystem::is_regular_file(place, ignored)) return place;
   throw OptionError(
       "the page of the workbench, octafront-ui.html, is not beside this program: scripts/ui.sh makes it (Node and npm); "

@@ -16,4 +16,4 @@ cp web/ui/package.json "$work/npm/"
 python3 web/ui/assemble.py "$work/npm/node_modules" "$work"
 [ "${1:-}" = --test ] || exit 0
 need_packages "${browser_packages[@]}"
-/usr/bin/python3 tests/web/ui_test.py build/release/cli/octafront samples
+/usr/bin/python3 tests/cli/ui_test.py build/release/cli/octafront samples

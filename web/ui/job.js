@@ -58,7 +58,9 @@ function optionsOf(job, isCad) {
   if (job.walls.length) {
     options.layers = positive(job.layers.n, "the number of layers");
     options.on = job.walls.map((p) => p.name).join(",");
+    const FIRST_PART = 0.2; // of the edge length, where nobody says it
     if (job.layers.first) options.first = positive(job.layers.first, "the height of the first layer");
+    else options["first-part"] = FIRST_PART;
     if (job.layers.growth) options.growth = positive(job.layers.growth, "the growth of layers");
   }
   const groups = job.names.flatMap(groupsOf);

@@ -104,6 +104,8 @@ async function surfaceOf(left, name, { signal }) {
 
 function takeSurface(surface) {
   now.surface = surface;
+  // Of one region the file with the surface says nothing.
+  if (surface.regions.length === 1) surface.regions = [now.info.places?.regions?.[0] ?? "body"];
   now.colours = surface.patches.map((_, i) => paletteColour(i));
   try {
     stage ??= startStage();
@@ -291,7 +293,7 @@ function showRepeat() {
 }
 
 function listOptions() {
-  const ELSEWHERE = new Set(["size", "elements", "automatic-factor", "order", "patches", "size-of", "layers", "on", "first", "growth", "group", "output", "format", "json", "quiet", "dry-run", "threads", "memory", "max-elements", "cpu-seconds", "within", "report", "ascii", "cells-only"]);
+  const ELSEWHERE = new Set(["size", "elements", "automatic-factor", "order", "patches", "size-of", "layers", "on", "first", "first-part", "growth", "group", "output", "format", "json", "quiet", "dry-run", "threads", "memory", "max-elements", "cpu-seconds", "within", "report", "ascii", "cells-only"]);
   const REPEATED = /may be repeated|in turn/;
   const row = ([option, { description, const: flag, anyOf, title }]) => {
     const id = "option-" + option, set = (value) => {
@@ -353,7 +355,7 @@ function showPlan({ reports: [report], sources = [] }) {
 /** The surface as it will be divided: what the sizes look like. */
 async function seeSizes() {
   const surface = await work("dividing the surface", async (given) => {
-    const { layers, on, first, growth, order, ...options } = optionsOf(history.now, isCad());
+    const { layers, on, first, "first-part": part, growth, order, ...options } = optionsOf(history.now, isCad());
     const known = Object.fromEntries(Object.entries(options).filter(([option]) => option !== "group"));
     return surfaceOf(await engine.run("surface", { input: inputPaths(), output: "sizes.ply", options: known }, given), "sizes.ply", given);
   });

@@ -59,7 +59,7 @@ class Stage {
 
   /** Takes its place; the frame of the picture, between -1 and 1, is its own. */
   showInput(surface) {
-    this.drop("input", "borders");
+    this.clear();
     this.surface = surface;
     const { points, triangles } = surface, borders = bordersOf(surface);
     this.borders = borders;
@@ -231,10 +231,9 @@ class Stage {
       this[key].material.dispose();
       this[key] = null;
     }
-    if (keys.includes("input") && this.lines) this.drop("lines");
   }
   clear() {
-    this.drop("input", "mesh", "marked", "preview");
+    this.drop("input", "lines", "mesh", "marked", "preview");
     this.surface = this.tets = null;
   }
   /** Either the input or the mesh is seen. */

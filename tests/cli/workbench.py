@@ -91,7 +91,16 @@ class Page:
             self.driver.execute_cdp_cmd("Input.dispatchMouseEvent", {"type": type, "x": box[0] + x, "y": box[1] + y, "button": "left" if type != "mouseMoved" else "none", "clickCount": 1})
 
     def where(self, kind, name):
-        """A point of the picture where this place is seen; None: nowhere."""
+        """A point of the picture where this place is seen, turned until it is; None: nowhere."""
+        for view in ("", "all", "−x", "+y", "−z", "−y", "+x", "+z"):
+            if view:
+                self.js("document.querySelector(`#views [aria-label='look from ${arguments[0]}']`).click()", view)
+                self.settle()
+            if at := self.seen(kind, name):
+                return at
+        return None
+
+    def seen(self, kind, name):
         return self.js("""const c = document.getElementById('canvas'), [kind, name] = arguments;
             for (let y = 6; y < c.clientHeight; y += 6) for (let x = 6; x < c.clientWidth; x += 6) {
               const there = [[0, 0], [4, 0], [0, 4], [-4, -4]].map(([a, b]) => octafront.placesAt(x + a, y + b, false)[0]);
