@@ -296,13 +296,14 @@ class Server {
     const auto now = Clock::now();
     if (call.token.is_null() || call.run->is_cancelled() || now - call.last_told < kBetween) return;
     call.last_told = now;
-    send({{"jsonrpc", "2.0"},
-          {"method", "notifications/progress"},
-          {"params",
-           {{"progressToken", call.token},
-            {"progress", ++call.told},
-            {"message", progress.fraction < 0 ? progress.stage
-                                            : fmt::format("{} {:.0f} %", progress.stage, 100 * progress.fraction)}}}});
+    send(
+        {{"jsonrpc", "2.0"},
+         {"method", "notifications/progress"},
+         {"params",
+          {{"progressToken", call.token},
+           {"progress", ++call.told},
+           {"message", progress.fraction < 0 ? progress.stage
+                                             : fmt::format("{} {:.0f} %", progress.stage, 100 * progress.fraction)}}}});
   }
 
   Json answered(const Call& call) {

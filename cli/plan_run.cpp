@@ -64,8 +64,7 @@ void PlanRun::hear(const std::string& text) {
     const std::string line = errors_.substr(0, end);
     if (line.starts_with('\x1f')) {
       const std::size_t tab = line.find('\t');
-      progress_ =
-          Progress{line.substr(1, tab - 1), tab == std::string::npos ? -1 : std::atof(line.c_str() + tab + 1)};
+      progress_ = Progress{line.substr(1, tab - 1), tab == std::string::npos ? -1 : std::atof(line.c_str() + tab + 1)};
     } else if (said_.size() < kMostSaid) {
       said_ += line + "\n";
     }
@@ -85,8 +84,7 @@ RunResult PlanRun::result(int status) const {
   result.report["error"] = {
       {"kind", "limit"},
       {"code", "seconds"},
-      {"message",
-       fmt::format("the {:g} seconds that it may take are over; no result was written", *plan_.seconds)}};
+      {"message", fmt::format("the {:g} seconds that it may take are over; no result was written", *plan_.seconds)}};
   return result;
 }
 

@@ -42,7 +42,8 @@ constexpr std::chrono::seconds kPatience{6};
 const std::vector<Tool>& workbench_tools() {
   using Output = Tool::Output;
   static const std::vector<Tool> all = [] {
-    std::vector<Tool> known{{"surface", "", "", "surface", Output::kOne, true, ""},
+    std::vector<Tool> known{{"info", "", "", "info", Output::kNone, false, ""},
+                            {"surface", "", "", "surface", Output::kOne, true, ""},
                             {"report", "", "", "report", Output::kOne, false, ""}};
     for (const Tool& tool : tools())
       if (!std::string_view(tool.command).empty()) known.push_back(tool);
@@ -131,12 +132,17 @@ class Workbench {
                                  {"X-Content-Type-Options", "nosniff"},
                                  {"Cross-Origin-Resource-Policy", "same-origin"},
                                  {"X-Frame-Options", "DENY"}});
-    server_.set_pre_routing_handler([this](const Request& request, Response& response) { return admit(request, response); });
+    server_.set_pre_routing_handler(
+        [this](const Request& request, Response& response) { return admit(request, response); });
     server_.set_error_handler([](const Request&, Response& response) {
       if (!response.body.empty() || response.has_header("Location")) return;
       const bool is_known = response.status == 413;
-      answer(response, in_json({0, is_known ? "too_large" : response.status == 404 ? "not_found" : "bad_request",
-                                fmt::format("status {}: no request that is served here", response.status)}),
+      answer(response,
+             in_json({0,
+                      is_known                 ? "too_large"
+                      : response.status == 404 ? "not_found"
+                                               : "bad_request",
+                      fmt::format("status {}: no request that is served here", response.status)}),
              response.status);
     });
     server_.set_exception_handler([](const Request&, Response& response, std::exception_ptr thrown) {
@@ -150,14 +156,18 @@ class Workbench {
     });
     const std::string at = "/" + token_ + "/";
     server_.Get("/open/" + key_, [this, at](const Request&, Response& response) { open_once(at, response); });
-    server_.Get(at, [this](const Request&, Response& response) { response.set_content(page_, "text/html; charset=utf-8"); });
+    server_.Get(
+        at, [this](const Request&, Response& response) { response.set_content(page_, "text/html; charset=utf-8"); });
     server_.Get(at + "about", [this](const Request&, Response& response) { answer(response, about()); });
     server_.Get(at + "alive", [this](const Request&, Response& response) { stay(response); });
-    server_.Get(at + "made/(\\d{1,9})/(.+)", [this](const Request& request, Response& response) { send_made(request, response); });
+    server_.Get(at + "made/(\\d{1,9})/(.+)",
+                [this](const Request& request, Response& response) { send_made(request, response); });
     server_.Put(at + "upload/(.+)", [this](const Request& request, Response& response, const ContentReader& content) {
       take_upload(request, response, content);
     });
-    server_.Post(at + "run", [this](const Request&, Response& response, const ContentReader& content) { take_call(response, content); });
+    server_.Post(at + "run", [this](const Request&, Response& response, const ContentReader& content) {
+      take_call(response, content);
+    });
   }
 
   std::string bind() {
@@ -231,7 +241,9 @@ class Workbench {
 
   // Files.
 
-  std::filesystem::path folder_of(const std::string& run) const { return scratch_.path() / ("run-" + run); }
+  std::filesystem::path folder_of(const std::string& run) const {
+    return scratch_.path() / ("run-" + run);
+  }
 
   static Json file_in_json(const std::filesystem::path& file, const std::string& name) {
     std::error_code ignored;
@@ -277,7 +289,8 @@ class Workbench {
     Json formats = Json::array();
     for (const FormatInfo& info : known_formats())
       if (info.writes_mesh)
-        formats.push_back({{"name", info.name}, {"title", info.title}, {"endings", info.endings}, {"one_file", info.one_file}});
+        formats.push_back(
+            {{"name", info.name}, {"title", info.title}, {"endings", info.endings}, {"one_file", info.one_file}});
     Json found{{"version", OCTAFRONT_VERSION}, {"formats", formats}};
     found["options"] = schema_of(app_)["$defs"]["options_of_mesh"]["properties"];
     found["file"] = file_.empty() ? Json() : file_in_json(file_, file_.filename().string());
@@ -329,7 +342,9 @@ class Workbench {
   static Json parsed(const std::string& text) {
     constexpr int kDeepest = 64;
     bool is_too_deep = false;
-    const auto deep = [&](int depth, Json::parse_event_t, Json&) { return !(is_too_deep = is_too_deep || depth > kDeepest); };
+    const auto deep = [&](int depth, Json::parse_event_t, Json&) {
+      return !(is_too_deep = is_too_deep || depth > kDeepest);
+    };
     Json call = Json::parse(text, deep, false);
     if (is_too_deep || !call.is_object() || !call.contains("tool") || !call["tool"].is_string() ||
         !call.contains("arguments") || !call["arguments"].is_object())
@@ -365,7 +380,8 @@ class Workbench {
 
   Json outcome(const Running& running) const {
     Json told = answer_of(*running.tool, running.arguments, running.run->results(), *running.folders);
-    Json done{{"status", told["status"]}, {"reports", Json::array()}, {"files", Json::array()}, {"run", running.number}};
+    Json done{
+        {"status", told["status"]}, {"reports", Json::array()}, {"files", Json::array()}, {"run", running.number}};
     for (const char* key : {"error", "next", "sources"})
       if (told.contains(key)) done[key] = told[key];
     for (const RunResult& result : running.run->results()) done["reports"].push_back(result.report);
@@ -393,10 +409,12 @@ std::filesystem::path workbench_page() {
   if (const char* named = std::getenv("OCTAFRONT_UI_PAGE")) return named;
   std::error_code ignored;
   const std::filesystem::path folder = this_program().parent_path(), name = "octafront-ui.html";
-  for (const std::filesystem::path& place : {folder / name, folder / "../share/octafront" / name, folder / "../../ui" / name})
+  for (const std::filesystem::path& place :
+       {folder / name, folder / "../share/octafront" / name, folder / "../../ui" / name})
     if (std::filesystem::is_regular_file(place, ignored)) return place;
   throw OptionError(
-      "the page of the workbench, octafront-ui.html, is not beside this program: scripts/ui.sh makes it (Node and npm); "
+      "the page of the workbench, octafront-ui.html, is not beside this program: scripts/ui.sh makes it (Node and "
+      "npm); "
       "the variable OCTAFRONT_UI_PAGE names it elsewhere");
 }
 

@@ -90,6 +90,10 @@ class Page:
         for type in ("mouseMoved", "mousePressed", "mouseReleased"):
             self.driver.execute_cdp_cmd("Input.dispatchMouseEvent", {"type": type, "x": box[0] + x, "y": box[1] + y, "button": "left" if type != "mouseMoved" else "none", "clickCount": 1})
 
+    def drag(self, x0, y0, x1, y1, alt=False):
+        for type, x, y, buttons in (("mousePressed", x0, y0, 1), ("mouseMoved", (x0 + x1) / 2, (y0 + y1) / 2, 1), ("mouseReleased", x1, y1, 0)):
+            self.driver.execute_cdp_cmd("Input.dispatchMouseEvent", {"type": type, "x": x, "y": y, "button": "left", "buttons": buttons, "clickCount": 1, "modifiers": 1 if alt else 0})
+
     def where(self, kind, name):
         """A point of the picture where this place is seen, turned until it is; None: nowhere."""
         for view in ("", "all", "−x", "+y", "−z", "−y", "+x", "+z"):

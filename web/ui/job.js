@@ -9,7 +9,7 @@ const NO_JOB = {
   more: {}, // further options, by the names of the command line
 };
 
-/** A place: {kind: "face" | "edge" | "region", name}, by the name that options take. */
+/** A place: {kind: "face" | "edge" | "region" | "set", name}, by the name that options take. */
 const keyOf = (place) => `${place.kind}:${place.name}`;
 
 /** Steps there and back. */
@@ -36,7 +36,7 @@ class History {
   }
 }
 
-/** Faces together are one set; edges and regions one each. */
+/** Faces together are one set; all else is one each. */
 function groupsOf({ name, places }) {
   const faces = places.filter((p) => p.kind === "face").map((p) => p.name), others = places.filter((p) => p.kind !== "face");
   // Between several places are commas: a face whose name has one stands alone.

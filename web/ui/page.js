@@ -73,7 +73,8 @@ async function openFiles(files) {
 
 async function openPart(inputs) {
   const opened = await work("reading", async (given) => {
-    const info = (await engine.run("inspect", { input: inputs[0].path }, given)).reports[0];
+    const info = (await engine.run("info", { input: inputs[0].path }, given)).reports[0];
+    if (info.triangles > MOST_TRIANGLES) throw tooLarge();
     return info.kind === "mesh" ? { info } : { info, surface: await readInput(inputs, {}, given) };
   });
   if (!opened) return;
@@ -97,10 +98,11 @@ async function readInput(inputs, options, given) {
 }
 async function surfaceOf(left, name, { signal }) {
   const file = left.files.find((one) => one.name === name), MOST_BYTES = 50 * MOST_TRIANGLES;
-  if (file.bytes > MOST_BYTES) throw new Error(`the surface has more than ${grouped(MOST_TRIANGLES)} triangles: more than a page can show. \`octafront mesh\` takes it; \`octafront picture\` draws it.`);
+  if (file.bytes > MOST_BYTES) throw tooLarge();
   const surface = readSurface(await (await fetch(`made/${left.run}/${name}`, { signal })).arrayBuffer());
   return { ...surface, report: left.reports[0] };
 }
+const tooLarge = () => new Error(`the surface has more than ${grouped(MOST_TRIANGLES)} triangles: more than a page can show. \`octafront mesh\` takes it; \`octafront picture\` draws it.`);
 
 function takeSurface(surface) {
   now.surface = surface;
@@ -148,6 +150,7 @@ function edgeOf({ patches: [a, b] }) {
 function placesOfKind(kind) {
   const { surface } = now;
   if (kind === "face") return surface.patches.map((name, i) => ({ kind, name, colour: now.colours[i], count: faceCounts()[i] })).filter((place) => place.count > 0);
+  if (kind === "set") return (now.info.places?.sets ?? []).map((name) => ({ kind, name })); // of CAD: what has a colour, a layer
   if (kind === "region") return surface.regions.map((name, i) => ({ kind, name, colour: paletteColour(i) }));
   const edges = new Set((stage?.borders ?? bordersOf(surface)).lines.map(edgeOf).filter(Boolean));
   return [...edges].sort((a, b) => a.localeCompare(b, "en", { numeric: true })).map((name) => ({ kind, name }));
@@ -163,6 +166,7 @@ function listPlaces() {
     make("span", { class: "swatch", style: place.colour ? `background:${css(place.colour)}` : "visibility:hidden" }), name(place.name), make("small", {}, shapes.get(place.name) ?? ""));
   byId("places").replaceChildren(...all.slice(0, MOST).map(row), ...(all.length > MOST ? [make("p", { class: "hint" }, `${grouped(all.length - MOST)} more: find them by name`)] : []));
   byId("spread-row").hidden = chosen("kind") !== "face";
+  byId("kind-set").hidden = !now.info.places?.sets?.length;
 }
 
 /** Picks places, or lets them go if all are picked. */
@@ -189,6 +193,7 @@ function hover(place) {
 /** What is at a place in the picture: places to pick. */
 function placesAt(x, y, spreads) {
   const kind = chosen("kind"), { surface } = now;
+  if (kind === "set") return [];
   if (kind === "edge") {
     const line = stage.lineAt(x, y), edge = line && edgeOf(line);
     return edge ? [{ kind, name: edge }] : [];
@@ -247,8 +252,7 @@ function sizeIt() {
   change({ sizes: [...history.now.sizes, { places: picks(), size: byId("local-size").value }] });
 }
 function layersThere() {
-  const edges = picks().some((place) => place.kind === "edge");
-  if (edges) return complain(new Error("layers grow on faces and around regions, not on edges"));
+  if (picks().some((place) => place.kind === "edge" || place.kind === "set")) return complain(new Error("layers grow on faces and around regions, not on edges and sets"));
   complain(null);
   const known = new Set(history.now.walls.map(keyOf));
   change({ walls: [...history.now.walls, ...picks().filter((place) => !known.has(keyOf(place)))] });
@@ -568,6 +572,7 @@ function startStage() {
     const places = placesAt(x, y, true);
     if (places.length) toggle(places);
   });
+  listenToBoxes();
   canvas.addEventListener("pointermove", (event) => {
     if (event.buttons || event.pointerType !== "mouse" || now.seen !== "input" || !now.surface || now.surface.patch.length > MOST_FORESEEN) return;
     hover(placesAt(event.offsetX, event.offsetY, false)[0] ?? null);
@@ -576,6 +581,37 @@ function startStage() {
   const VIEWS = { "+x": [[1, 0, 0], [0, 0, 1]], "+y": [[0, 1, 0], [0, 0, 1]], "+z": [[0, 0, 1], [0, 1, 0]], "−x": [[-1, 0, 0], [0, 0, 1]], "−y": [[0, -1, 0], [0, 0, 1]], "−z": [[0, 0, -1], [0, 1, 0]], all: [START.back, START.up] };
   byId("views").replaceChildren(...Object.entries(VIEWS).map(([view, where]) => make("button", { type: "button", "aria-label": `look from ${view}`, onclick: () => made.lookFrom(...where) }, view)));
   return made;
+}
+
+/** With Alt a rectangle is drawn, and all that is seen in it is picked: by samples, as fine as a hand draws. */
+function listenToBoxes() {
+  const SAMPLES = 24, box = byId("box");
+  let from = null;
+  const corners = ({ offsetX: x, offsetY: y }) => [Math.min(from[0], x), Math.min(from[1], y), Math.abs(x - from[0]), Math.abs(y - from[1])];
+  const only = (does) => (event) => {
+    if (!from && !(event.type === "pointerdown" && event.altKey && now.seen === "input" && now.surface)) return;
+    event.stopImmediatePropagation();
+    does(event);
+  };
+  canvas.addEventListener("pointerdown", only((event) => {
+    from = [event.offsetX, event.offsetY];
+    canvas.setPointerCapture(event.pointerId);
+  }), true);
+  canvas.addEventListener("pointermove", only((event) => {
+    const [x, y, width, height] = corners(event);
+    box.hidden = false;
+    box.style.cssText = `left:${x}px;top:${y}px;width:${width}px;height:${height}px`;
+  }), true);
+  canvas.addEventListener("pointerup", only((event) => {
+    const [x, y, width, height] = corners(event), found = new Map();
+    from = null;
+    box.hidden = true;
+    for (let i = 0; i <= SAMPLES; ++i)
+      for (let k = 0; k <= SAMPLES; ++k) for (const place of placesAt(x + (width * i) / SAMPLES, y + (height * k) / SAMPLES, false)) found.set(keyOf(place), place);
+    for (const [key, place] of found) now.picked.set(key, place);
+    showPicked();
+  }), true);
+  canvas.addEventListener("pointercancel", () => ((from = null), (box.hidden = true)));
 }
 
 function listenToKeys() {

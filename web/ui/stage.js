@@ -1,7 +1,7 @@
 // --- stage.js: the input and the mesh in 3D, by three.js; the camera is that of the report page.
 
 import {
-  BufferAttribute, BufferGeometry, Color, ColorManagement, DirectionalLight, DoubleSide, HemisphereLight, LineBasicMaterial, LinearSRGBColorSpace, LineSegments, Mesh, MeshLambertMaterial, PerspectiveCamera, Plane, Raycaster,
+  BufferAttribute, BufferGeometry, Color, ColorManagement, DirectionalLight, DoubleSide, HemisphereLight, LineBasicMaterial, LinearSRGBColorSpace, LineSegments, Mesh, MeshBasicMaterial, MeshLambertMaterial, PerspectiveCamera, Plane, Raycaster,
   Scene, Vector2, Vector3, WebGLRenderer,
 } from "three";
 
@@ -199,13 +199,14 @@ class Stage {
   cornersOf(element) {
     return [0, 1, 2, 3].map((i) => this.placeOf(this.tets.tets[4 * element + i]));
   }
-  /** Draws its edges over all else; -1: none. */
-  mark(element, colour) {
-    this.drop("marked");
+  /** Draws an element over all else, so that it shines through; -1: none. */
+  mark(element, color) {
+    this.drop("marked", "outlined");
     if (element >= 0) {
-      const corners = this.cornersOf(element), ends = new Float32Array(EDGES.flatMap((i) => corners[i]));
-      this.marked = this.add(new LineSegments(geometryOf({ position: [ends, 3] }), new LineBasicMaterial({ color: colour, depthTest: false })));
-      this.marked.renderOrder = 1;
+      const corners = this.cornersOf(element), through = (indices) => geometryOf({ position: [new Float32Array(indices.flatMap((i) => corners[i])), 3] });
+      this.marked = this.add(new Mesh(through(FACES), new MeshBasicMaterial({ color, depthTest: false, transparent: true, opacity: 0.45 })));
+      this.outlined = this.add(new LineSegments(through(EDGES), new LineBasicMaterial({ color, depthTest: false })));
+      this.marked.renderOrder = this.outlined.renderOrder = 1;
     }
     this.redraw();
   }
@@ -233,12 +234,12 @@ class Stage {
     }
   }
   clear() {
-    this.drop("input", "lines", "mesh", "marked", "preview");
+    this.drop("input", "lines", "mesh", "marked", "outlined", "preview");
     this.surface = this.tets = null;
   }
   /** Either the input or the mesh is seen. */
   show(what) {
-    for (const [key, of] of [["input", "input"], ["lines", "input"], ["mesh", "mesh"], ["marked", "mesh"], ["preview", "preview"]]) if (this[key]) this[key].visible = what === of;
+    for (const [key, of] of [["input", "input"], ["lines", "input"], ["mesh", "mesh"], ["marked", "mesh"], ["outlined", "mesh"], ["preview", "preview"]]) if (this[key]) this[key].visible = what === of;
     this.redraw();
   }
   /** Of the input what lies beyond the plane is not drawn; of the mesh only where the cut is smooth. */
