@@ -18,6 +18,7 @@
 #include <iterator>
 #include <memory>
 #include <mutex>
+#include <optional>
 #include <random>
 #include <thread>
 
@@ -58,13 +59,36 @@ struct HttpError {
   std::string code, message;
 };
 
-Json in_json(const HttpError& error) {
-  return {{"error", {{"kind", "request"}, {"code", error.code}, {"message", error.message}}}};
+std::string text_of(const Json& json) {
+  return json.dump(-1, ' ', false, Json::error_handler_t::replace);
 }
 
 void answer(Response& response, const Json& json, int status = 200) {
   response.status = status;
-  response.set_content(json.dump(-1, ' ', false, Json::error_handler_t::replace), "application/json");
+  response.set_content(text_of(json), "application/json");
+}
+void answer_error(Response& response, const HttpError& error) {
+  answer(response, {{"error", {{"kind", "request"}, {"code", error.code}, {"message", error.message}}}}, error.status);
+}
+httplib::Server::HandlerResponse answer_handled(Response& response, const HttpError& error) {
+  answer_error(response, error);
+  return httplib::Server::HandlerResponse::Handled;
+}
+
+/// What the library itself refuses.
+HttpError error_of_status(int status) {
+  if (status == 413) return {status, "too_large", "that is more than is taken"};
+  if (status == 404) return {status, "not_found", "nothing is served here"};
+  return {status, "bad_request", fmt::format("no request that is understood ({})", status)};
+}
+
+/// Not in one piece, which the library would take a second to compress.
+void send_text(Response& response, std::string text, const char* type) {
+  const std::size_t size = text.size();
+  response.set_content_provider(size, type,
+                                [text = std::move(text)](std::size_t offset, std::size_t length, DataSink& sink) {
+                                  return sink.write(text.data() + offset, length);
+                                });
 }
 
 std::string random_hex() {
@@ -125,6 +149,7 @@ class Workbench {
   void set_up() {
     server_.new_task_queue = [] { return new httplib::ThreadPool(kThreads); };
     server_.set_keep_alive_max_count(1000);
+    server_.set_keep_alive_timeout(2);  // seconds, for which the end may have to wait
     server_.set_tcp_nodelay(true);
     server_.set_payload_max_length(kLargestUpload);
     server_.set_default_headers({{"Cache-Control", "no-store"},
@@ -132,33 +157,32 @@ class Workbench {
                                  {"X-Content-Type-Options", "nosniff"},
                                  {"Cross-Origin-Resource-Policy", "same-origin"},
                                  {"X-Frame-Options", "DENY"}});
-    server_.set_pre_routing_handler(
-        [this](const Request& request, Response& response) { return admit(request, response); });
+    server_.set_pre_routing_handler([this](const Request& request, Response& response) {
+      if (const auto refused = refusal_of(request)) return answer_handled(response, *refused);
+      return httplib::Server::HandlerResponse::Unhandled;
+    });
     server_.set_error_handler([](const Request&, Response& response) {
-      if (!response.body.empty() || response.has_header("Location")) return;
-      const bool is_known = response.status == 413;
-      answer(response,
-             in_json({0,
-                      is_known                 ? "too_large"
-                      : response.status == 404 ? "not_found"
-                                               : "bad_request",
-                      fmt::format("status {}: no request that is served here", response.status)}),
-             response.status);
+      if (response.body.empty()) answer_error(response, error_of_status(response.status));
     });
     server_.set_exception_handler([](const Request&, Response& response, std::exception_ptr thrown) {
       try {
         std::rethrow_exception(thrown);
       } catch (const HttpError& error) {
-        answer(response, in_json(error), error.status);
+        answer_error(response, error);
       } catch (...) {
-        answer(response, in_json({0, "internal", current_failure().message}), 500);
+        answer_error(response, {500, "internal", current_failure().message});
       }
     });
-    const std::string at = "/" + token_ + "/";
+    set_routes("/" + token_ + "/");
+  }
+
+  void set_routes(const std::string& at) {
     server_.Get("/open/" + key_, [this, at](const Request&, Response& response) { open_once(at, response); });
-    server_.Get(
-        at, [this](const Request&, Response& response) { response.set_content(page_, "text/html; charset=utf-8"); });
-    server_.Get(at + "about", [this](const Request&, Response& response) { answer(response, about()); });
+    server_.Get(at,
+                [this](const Request&, Response& response) { send_text(response, page_, "text/html; charset=utf-8"); });
+    server_.Get(at + "about", [this](const Request&, Response& response) {
+      send_text(response, text_of(about()), "application/json");
+    });
     server_.Get(at + "alive", [this](const Request&, Response& response) { stay(response); });
     server_.Get(at + "made/(\\d{1,9})/(.+)",
                 [this](const Request& request, Response& response) { send_made(request, response); });
@@ -179,28 +203,21 @@ class Workbench {
   }
 
   /// Nobody else's page, under whatever name it knows this machine, and nobody without the token.
-  httplib::Server::HandlerResponse admit(const Request& request, Response& response) {
-    const auto refused = [&](const char* code, const char* message) {
-      answer(response, in_json({403, code, message}), 403);
-      return httplib::Server::HandlerResponse::Handled;
-    };
-    const std::string here = fmt::format("127.0.0.1:{}", port_), also = fmt::format("localhost:{}", port_);
+  std::optional<HttpError> refusal_of(const Request& request) const {
     const std::string host = request.get_header_value("Host");
-    if (request.get_header_value_count("Host") != 1 || (host != here && host != also))
-      return refused("bad_host", "requests name the address that was printed");
-    const std::string origin = request.get_header_value("Origin");
-    if (request.has_header("Origin") && origin != "http://" + host)
-      return refused("bad_origin", "requests come from the page that is served here");
+    if (request.get_header_value_count("Host") != 1 ||
+        (host != fmt::format("127.0.0.1:{}", port_) && host != fmt::format("localhost:{}", port_)))
+      return HttpError{403, "bad_host", "requests name the address that was printed"};
+    const bool is_first_look = request.method == "GET" && is_same_secret(request.path, "/open/" + key_);
+    if (!is_first_look &&
+        !is_same_secret(std::string_view(request.path).substr(0, token_.size() + 2), "/" + token_ + "/"))
+      return HttpError{403, "no_token", "requests have the token of the address that was printed"};
     const std::string site = request.get_header_value("Sec-Fetch-Site");
-    const bool is_from_page = site.empty() || site == "same-origin" || (site == "none" && request.method == "GET");
-    const std::string_view path = request.path;
-    const std::string once = "/open/" + key_;
-    if (is_same_secret(path, once) && request.method == "GET") return httplib::Server::HandlerResponse::Unhandled;
-    if (path.size() < token_.size() + 2 || path.front() != '/' || path[token_.size() + 1] != '/' ||
-        !is_same_secret(path.substr(1, token_.size()), token_))
-      return refused("no_token", "requests have the token of the address that was printed");
-    if (!is_from_page) return refused("bad_origin", "requests come from the page that is served here");
-    return httplib::Server::HandlerResponse::Unhandled;
+    const bool is_typed = site == "none" && request.method == "GET";
+    if ((request.has_header("Origin") && request.get_header_value("Origin") != "http://" + host) ||
+        (!site.empty() && site != "same-origin" && !is_typed && !is_first_look))
+      return HttpError{403, "bad_origin", "requests come from the page that is served here"};
+    return std::nullopt;
   }
 
   /// The browser's command line can be seen by others; what stands there is good for one look.
@@ -217,8 +234,13 @@ class Workbench {
 #endif
     std::string word = address;
     std::array<char*, 3> argv{const_cast<char*>(program), word.data(), nullptr};
+    // Ctrl-C here is not for the browser. Whoever has none opens the address that is printed.
+    posix_spawnattr_t apart;
+    ::posix_spawnattr_init(&apart);
+    ::posix_spawnattr_setflags(&apart, POSIX_SPAWN_SETPGROUP);
     pid_t process = 0;
-    ::posix_spawnp(&process, program, nullptr, nullptr, argv.data(), environ);  // whoever has none opens the address
+    ::posix_spawnp(&process, program, nullptr, &apart, argv.data(), environ);
+    ::posix_spawnattr_destroy(&apart);
   }
 
   // Pages that are open.
@@ -299,7 +321,7 @@ class Workbench {
 
   // Runs.
 
-  static std::string text_of(const ContentReader& content) {
+  static std::string read_call(const ContentReader& content) {
     std::string text;
     const bool is_whole = content([&](const char* data, std::size_t size) {
       text.append(data, size);
@@ -318,7 +340,7 @@ class Workbench {
   };
 
   void take_call(Response& response, const ContentReader& content) {
-    const Json call = parsed(text_of(content));
+    const Json call = parsed(read_call(content));
     const auto tool = std::ranges::find_if(workbench_tools(), [&](const Tool& t) { return call["tool"] == t.name; });
     if (tool == workbench_tools().end()) throw HttpError{400, "no_tool", "there is no tool of this name"};
     check_outputs(call["arguments"]);
@@ -360,7 +382,7 @@ class Workbench {
   /// A line of JSON as soon as there is something to tell, an empty one now and then: who is gone is found out by it.
   bool go_on(Running& running, DataSink& sink) {
     const auto tell = [&](const Json& line) {
-      const std::string text = line.dump(-1, ' ', false, Json::error_handler_t::replace) + "\n";
+      const std::string text = text_of(line) + "\n";
       return sink.write(text.data(), text.size());
     };
     constexpr int kSoon = 100;  // milliseconds
