@@ -25,6 +25,22 @@ def mesh(program, source, folder, timeout, *options, out="out.vtu", threads=1):
     return finish(outcome, made)
 
 
+class Runs:
+    """Commands of ours on one thread, whose files are in one folder."""
+
+    def __init__(self, build, folder):
+        self.program, self.folder = build / "cli/octafront", pathlib.Path(folder)
+
+    def run(self, *words, timeout=1200):
+        """(report, Outcome); SystemExit says what failed."""
+        report = self.folder / "report.json"
+        report.unlink(missing_ok=True)
+        done = run_measured([self.program, *words, "-q", "--threads", 1, "--json", report], ".", timeout)
+        if done.error:
+            raise SystemExit(f"{done.command}: {done.log.strip() or done.error}")
+        return json.loads(report.read_text()), done
+
+
 def evaluated(build, file, *more, timeout=600):
     """What octafront_evaluate says of a mesh, or in words why it cannot read it: (figures or None, words)."""
     done = run_measured([build / "bench/octafront_evaluate", file, *more], ".", timeout)

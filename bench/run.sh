@@ -19,6 +19,7 @@
 #   bench/run.sh adapt_loops  meshes adapted to small and large sizes in turn, ten times -> docs/measured/adapt-isotropic.md
 #   bench/run.sh carry       fields on 30 pairs of meshes: integrals, bounds, order of convergence, a million elements -> docs/measured/carry.md
 #   bench/run.sh move        a ball as a level set in twenty places of a box; blocks and bars stretched, flattened, bent, twisted -> docs/measured/move.md
+#   bench/run.sh motion      bodies in fifty steps: bent, twisted, pressed, growing, sloshing; MMG3D=PROGRAM beside it -> docs/measured/motion.md
 #   bench/run.sh formats     how fast meshes are written, every format beside a plain write -> docs/measured/formats-bench.md
 #   bench/run.sh parts       meshes in parts: what divisions are worth, time and memory beside one file -> docs/measured/parts.md
 #   bench/run.sh second_order   all clean models, balls, tori, cylinders: proven? how true? at what cost? -> docs/measured/second-order.md
@@ -51,7 +52,7 @@ cd "$(dirname "$0")/.."
 source scripts/lib/apt.sh
 
 case ${1:-} in
-  status | derived | pipeline | surface | elements | gradation | volume | graded | peers | experiments | complexes | improve | adapt | adapt_loops | carry | move | formats | parts | second_order | dry_run | repair | known_answers | damage | images | images_needed | four_shells | thin | budget | cad | layers | layers_shapes | layers_flows | layers_peers | layers_solved | inside | periodic | ranks | threads | answers | polyhedral | flows | cavity | high_order) ;;
+  status | derived | pipeline | surface | elements | gradation | volume | graded | peers | experiments | complexes | improve | adapt | adapt_loops | carry | move | motion | formats | parts | second_order | dry_run | repair | known_answers | damage | images | images_needed | four_shells | thin | budget | cad | layers | layers_shapes | layers_flows | layers_peers | layers_solved | inside | periodic | ranks | threads | answers | polyhedral | flows | cavity | high_order) ;;
   *) sed -n '2,/^set/s/^# \{0,1\}//p' "$0"; exit 2 ;;
 esac
 need_packages "${build_packages[@]}" python3
@@ -72,7 +73,7 @@ need_packages "${build_packages[@]}" python3
 [[ $1 != layers_* ]] || need_packages python3-numpy python3-meshio openfoam
 { [ "$1" != flows ] && [ "$1" != cavity ]; } || need_packages python3-numpy openfoam
 [ "$1" != high_order ] || need_packages python3-numpy python3-gmsh "${cad_packages[@]}"
-[ "$1" != adapt ] || need_packages python3-numpy python3-dolfinx
+{ [ "$1" != adapt ] && [ "$1" != motion ]; } || need_packages python3-numpy python3-dolfinx
 [ "$1" != periodic ] || need_packages calculix-ccx
 { [ "$1" != inside ] && [ "$1" != periodic ]; } || need_packages python3-numpy python3-meshio python3-gmsh tetgen
 [ "$1" != layers_peers ] || need_packages python3-gmsh
@@ -80,7 +81,7 @@ need_packages "${build_packages[@]}" python3
 [ "$1" != images_needed ] || need_packages python3-numpy python3-nibabel
 [ "$1" != four_shells ] || need_packages python3-numpy python3-scipy python3-nibabel python3-meshio
 [[ $1 != images* ]] || [ -d volumes ] || bench/models/get-volumes.sh
-[ "$1" = move ] || [ "$1" = formats ] || [ "$1" = ranks ] || [ "$1" = adapt ] || [ "$1" = complexes ] || [ "$1" = four_shells ] || [[ $1 = images* ]] || [ "$1" = thin ] || [ "$1" = cad ] || [ "$1" = answers ] || [ "$1" = flows ] || [ "$1" = cavity ] || [ "$1" = high_order ] || [ -d models/clean ] || bench/models/get-models.sh --ct
+[ "$1" = move ] || [ "$1" = motion ] || [ "$1" = formats ] || [ "$1" = ranks ] || [ "$1" = adapt ] || [ "$1" = complexes ] || [ "$1" = four_shells ] || [[ $1 = images* ]] || [ "$1" = thin ] || [ "$1" = cad ] || [ "$1" = answers ] || [ "$1" = flows ] || [ "$1" = cavity ] || [ "$1" = high_order ] || [ -d models/clean ] || bench/models/get-models.sh --ct
 tests=OFF
 [ "$1" != complexes ] && [ "$1" != known_answers ] || tests=ON  # what makes complexes is theirs, and a judge
 mpi=()

@@ -18,4 +18,13 @@ std::vector<MeshField> fields_to_carry(Session& session, const TetMesh& mesh);
 std::vector<MeshField> carried_fields(Session& session, const std::vector<MeshField>& fields, const TetMesh& before,
                                       const TetMesh& now, OutsideNodes outside, const KnownItems* same = nullptr);
 
+/// All fields of the file that a mesh was read from, as far as an output holds fields.
+std::vector<MeshField> all_fields(Session& session, const TetMesh& mesh);
+/// Of a mesh that got another order: fields at points have values at its corners, and go where it has more nodes, which
+/// a note says.
+void keep_fields_of_corners(Session& session, std::vector<MeshField>& fields, std::size_t corners, std::size_t nodes);
+
+/// The report gets what became of fields.
+void tell_fields(Session& session, const std::vector<FieldReport>& fields);
+
 }  // namespace octafront::cli

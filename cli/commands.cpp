@@ -410,14 +410,17 @@ void run_convert(Session& session) {
   if (std::filesystem::is_regular_file(a.input) && !holds_tetrahedra(a.input.string(), session.context()))
     return convert_surface_input(session);
   TetMesh mesh = read_mesh_input(session);
+  std::vector<MeshField> fields = all_fields(session, mesh);
   if (a.new_order > 0 && a.new_order != mesh.order()) {
     make_linear(mesh);
+    const std::size_t corners = mesh.points.size();
     if (a.new_order > 1) make_curved(mesh, a.new_order, nullptr, 40, session.context());
+    keep_fields_of_corners(session, fields, corners, mesh.points.size());
   }
   // Whoever converts wants the mesh as it is; but nobody should find out in the solver.
   if (const auto defect = first_defect(mesh, session.context()))
     session.say_notes("checking", {"the mesh is not valid: " + *defect});
-  write_mesh_targets(session, mesh);
+  write_mesh_targets(session, mesh, fields);
   say_written(session);
 }
 

@@ -53,6 +53,8 @@ void run_move(Session& session) {
   std::erase_if(fields, [&](const MeshField& f) { return f.name == a.displacement; });
   const MovedMesh moved = move_mesh(mesh, displacement, fields, a.options, session.context());
   tell_history(session, moved.history);
+  session.say_notes("move", moved.notes);
+  if (!moved.carried.empty()) tell_fields(session, moved.carried);
   write_mesh_targets(session, moved.mesh, moved.fields);
   tell_worst(session, worst_elements(moved.mesh, kWorstListed));
   for (const std::filesystem::path& file : a.meshes) session.say(fmt::format("written: {}\n", file.string()));

@@ -190,7 +190,7 @@ constexpr ReportField kReport[] = {
     {"deviation.upper", "number", ""},
     {"deviation.at", "place", ""},
     {"history[].fraction", "number", "of a motion that was done after this step"},
-    {"history[].change", "string", "moved, improved or adapted"},
+    {"history[].change", "string", "moved, improved, adapted or remeshed"},
     {"history[].elements", "integer", ""},
     {"history[].beta_min", "number", "3 r / R, least"},
     {"history[].beta_mean", "number", "3 r / R, mean"},

@@ -4,37 +4,25 @@ bodies; a cube on refined pairs, for the order; a million elements. Writes docs/
 Usage: bench/run.sh carry [--only SUBSTRING] [--quick]
 """
 import argparse
-import json
 import math
 import pathlib
 import tempfile
 
 from bench.models.cube import CUBE
+from bench.ours import Runs
 from bench.pages import tables
 from bench.pages.origin import written_by
-from bench.process import run_measured
 
 MODELS = ["bunny00.off", "armadillo.off", "couplingdown.off", "fandisk.off", "femur.off", "joint.off", "elephant.off", "rotor.off", "double-torus-example.off"]
 HEAD_IMAGE = "samples/head_labels.nii.gz"
 SMOOTH = "sin(6.3*(x-({x}))/{d})*cos(5*(y-({y}))/{d})+(z-({z}))/{d}"
 STEP = "max(0,min(1,1e6*((x-({x}))/{d}+(y-({y}))/{d})))"
 PAIRS = ["body", "pair", "old", "new", "regions", "volume changed", "uncovered", "lost", "integral error", "beyond the range", "mean error", "mean error, linear", "CPU s", "CPU s, linear"]
-ORDERS = ["old size", "elements", "of elements", "of elements, linear", "at points"]
+ORDERS = ["old size", "elements", "of elements", "of elements, linear", "at points", "at points, quadratic"]
 COSTS = ["what", "old", "new", "both have", "CPU s", "of them reading and writing", "memory MB"]
 
 
-class Runs:
-    def __init__(self, build, folder):
-        self.program, self.folder = build / "cli/octafront", pathlib.Path(folder)
-
-    def run(self, *words, timeout=1200):
-        report = self.folder / "report.json"
-        report.unlink(missing_ok=True)
-        done = run_measured([self.program, *words, "-q", "--threads", 1, "--json", report], ".", timeout)
-        if done.error:
-            raise SystemExit(f"{done.command}: {done.log.strip() or done.error}")
-        return json.loads(report.read_text()), done
-
+class Carries(Runs):
     def meshed(self, name, source, *options):
         """The mesh, with the two fields on it, and how to write them."""
         file = self.folder / f"{name}.vtu"
@@ -112,7 +100,8 @@ def order_rows(runs, quick):
         source = runs.with_fields(old, place)
         report, _, means = runs.carried(source, new, exact)
         linear = runs.carried(source, new, exact, "--linear-elements")[2]
-        errors = [means["elements"], linear["elements"], means["points"]]
+        quadratic = runs.carried(source, new, exact, "--quadratic-nodes")[2]
+        errors = [means["elements"], linear["elements"], means["points"], quadratic["points"]]
         shown = [f"{e:.2e}" + (f" ({math.log2(b / e):.2f})" if before else "") for e, b in zip(errors, before or errors)]
         rows.append([f"{size:g}", f"{report['carry']['elements']:,}", *shown])
         before = errors
@@ -126,7 +115,7 @@ def cost_rows(runs, quick):
     old = runs.with_fields(runs.meshed("old_million", source, "--elements", n), {"x": 0, "y": 0, "z": 0, "d": 1})
     new = runs.meshed("new_million", source, "--elements", n, "--gradation", .19)
     reading = runs.run("convert", old, "-o", runs.folder / "out.vtu")[1].cpu_seconds + runs.run("info", new)[1].cpu_seconds
-    for what, onto, options in (("another mesh", new, []), ("another mesh, linear", new, ["--linear-elements"]), ("the same mesh", old, [])):
+    for what, onto, options in (("another mesh", new, []), ("another mesh, linear", new, ["--linear-elements"]), ("another mesh, quadratic at points", new, ["--quadratic-nodes"]), ("the same mesh", old, [])):
         report, done = runs.run("carry", old, onto, "-o", runs.folder / "out.vtu", *options)
         mesh = report["carry"]
         rows.append([what, f"{runs.run('info', old)[0]['tets']:,}", f"{mesh['elements']:,}", f"{mesh['copied_elements']:,}", f"{done.cpu_seconds:.1f}",
@@ -155,7 +144,7 @@ def main():
     parser.add_argument("--quick", action="store_true", help="small meshes, to try; no page")
     a = parser.parse_args()
     with tempfile.TemporaryDirectory() as folder:
-        runs = Runs(a.build, folder)
+        runs = Carries(a.build, folder)
         pairs, orders, costs = pair_rows(runs, a.only, a.quick), order_rows(runs, a.quick), cost_rows(runs, a.quick)
     if not a.only and not a.quick:
         tables.write("carry", page(pairs, orders, costs))

@@ -4,32 +4,20 @@ stretched, flattened, bent and twisted. Are they valid, how good are elements, a
 Usage: bench/run.sh move [--quick]
 """
 import argparse
-import json
 import math
 import pathlib
 import tempfile
 
+from bench.ours import Runs
 from bench.pages import tables
 from bench.pages.origin import written_by
-from bench.process import run_measured
 
 BOX = [(0, 2, 3), (0, 3, 1), (4, 5, 7), (4, 7, 6), (0, 1, 5), (0, 5, 4), (2, 6, 7), (2, 7, 3), (0, 4, 6), (0, 6, 2), (1, 3, 7), (1, 7, 5)]
 CUTS = ["place", "elements", "ball's volume, of the true one", "least β", "mean β", "angles °", "points moved", "edges divided", "CPU s"]
 MOTIONS = ["motion", "old elements", "elements", "steps", "of them improved", "of them adapted", "least β on the way", "least β", "mean β", "volume", "volume of the motion", "CPU s"]
 
 
-class Runs:
-    def __init__(self, build, folder):
-        self.program, self.folder = build / "cli/octafront", pathlib.Path(folder)
-
-    def run(self, *words):
-        report = self.folder / "report.json"
-        report.unlink(missing_ok=True)
-        done = run_measured([self.program, *words, "-q", "--threads", 1, "--json", report], ".", 1200)
-        if done.error:
-            raise SystemExit(f"{done.command}: {done.log.strip() or done.error}")
-        return json.loads(report.read_text()), done.cpu_seconds
-
+class Boxes(Runs):
     def box(self, name, size, length, *options):
         """A box from the origin, `length` along x and 1 across."""
         surface, mesh = self.folder / f"{name}.off", self.folder / f"{name}.vtk"
@@ -46,12 +34,12 @@ def ball_in_box(runs, quick):
         x, y, z = .5 + .25 * math.cos(angle), .5 + .25 * math.sin(angle), .5 + .02 * i / places
         field = runs.folder / "field.vtu"
         runs.run("convert", mesh, "-o", field, "--field", f"ball=sqrt((x-{x})^2+(y-{y})^2+(z-{z})^2)-.2")
-        report, seconds = runs.run("adapt", field, "--level-set", "ball", "-o", runs.folder / "cut.vtu")
+        report, done = runs.run("adapt", field, "--level-set", "ball", "-o", runs.folder / "cut.vtu")
         runs.run("check", runs.folder / "cut.vtu")
         quality, cut = report["quality"], report["level_sets"][0]
         volume = next(r["volume"] for r in report["regions"] if r["name"] == "ball") / (4 / 3 * math.pi * .008)
         rows.append([f"{360 * i / places:.0f}°", f"{report['tets']:,}", f"{volume:.4f}", f"{quality['beta_min']:.3f}", f"{quality['beta_mean']:.3f}",
-                     f"{quality['dihedral_min_degrees']:.1f}–{quality['dihedral_max_degrees']:.1f}", cut["moved"], cut["divided"], f"{seconds:.2f}"])
+                     f"{quality['dihedral_min_degrees']:.1f}–{quality['dihedral_max_degrees']:.1f}", cut["moved"], cut["divided"], f"{done.cpu_seconds:.2f}"])
         print(tables.row(rows[-1]), flush=True)
     return rows
 
@@ -99,12 +87,12 @@ def motion_rows(runs, quick):
     for name, length, place, volume in motions():
         mesh = runs.box("bar", (.2 if quick else .1) * (1 if length == 1 else 1.5), length)
         old = runs.run("info", mesh)[0]["tets"]
-        report, seconds = runs.run("move", with_displacement(runs, mesh, place), "--displacement", "u", "-o", runs.folder / "moved.vtu")
+        report, done = runs.run("move", with_displacement(runs, mesh, place), "--displacement", "u", "-o", runs.folder / "moved.vtu")
         runs.run("check", runs.folder / "moved.vtu")
         history = report["history"]
         last, count = history[-1], lambda change: sum(step["change"] == change for step in history)
         rows.append([name, f"{old:,}", f"{last['elements']:,}", len(history), count("improved"), count("adapted"), f"{min(s['beta_min'] for s in history):.3f}", f"{last['beta_min']:.3f}",
-                     f"{last['beta_mean']:.3f}", f"{last['volume']:.4f}", f"{volume:g}", f"{seconds:.2f}"])
+                     f"{last['beta_mean']:.3f}", f"{last['volume']:.4f}", f"{volume:g}", f"{done.cpu_seconds:.2f}"])
         print(tables.row(rows[-1]), flush=True)
     return rows
 
@@ -123,7 +111,7 @@ def main():
     parser.add_argument("--quick", action="store_true", help="small meshes, to try; no page")
     a = parser.parse_args()
     with tempfile.TemporaryDirectory() as folder:
-        runs = Runs(a.build, folder)
+        runs = Boxes(a.build, folder)
         cuts, motion = ball_in_box(runs, a.quick), motion_rows(runs, a.quick)
     if not a.quick:
         tables.write("move", page(cuts, motion))

@@ -54,9 +54,13 @@ struct CarryReport {
   std::vector<std::string> notes;
 };
 
-/// As JSON objects, keys as the members above: how the meshes lie to each other, and the list of the fields.
+/// As JSON, keys as the members above: how the meshes lie to each other, and the list of the fields.
 std::string to_json(const CarryReport& report);
-std::string fields_to_json(const CarryReport& report);
+std::string to_json(const std::vector<FieldReport>& fields);
+
+/// What became of a field that went from one mesh to the other: what carry_fields() tells of those that it carries.
+FieldReport report_of_field(const MeshField& old, const TetMesh& before, const MeshField& made, const TetMesh& now,
+                            const CarryOptions& options = {});
 
 struct CarriedFields {
   std::vector<MeshField> fields;
@@ -78,10 +82,14 @@ struct KnownItems {
 /// bodies differ, what a region lacks is spread over its elements that changed, first within that range. Components go
 /// by themselves.
 ///
-/// Regions are those of the same name, or without names of the same number. Meshes of second order are taken as linear
-/// ones: mid-side nodes of the new one get values like others, those of the old one have no say. `same`: which items
-/// stayed, and both meshes are valid where others are; null: found by their coordinates. The values are the same for
-/// any number of threads.
+/// With options.quadratic_nodes fields at nodes are quadratic in old elements, which bend where they are of second
+/// order; options.integration_points names fields that have four values in each element: linear there, carried as their
+/// mean and the differences at the new points.
+///
+/// Regions are those of the same name, or without names of the same number. Otherwise meshes of second order are taken
+/// as linear ones: mid-side nodes of the new one get values like others, those of the old one have no say. `same`:
+/// which items stayed, and both meshes are valid where others are; null: found by their coordinates. The values are the
+/// same for any number of threads.
 ///
 /// Example: carry_fields(read_fields("old.vtu", old).fields, old, read_mesh("new.msh")).fields.
 ///

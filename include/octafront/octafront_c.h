@@ -324,9 +324,9 @@ typedef struct {
 octafront_job* octafront_carry(const octafront_mesh* before, const octafront_mesh* now, int adapted,
                                const octafront_field* fields, size_t count, const octafront_options* options,
                                int threads);
-/** -> mesh: move_mesh() of octafront/move.h, by three numbers for each point. The report has "history". The fields,
- * whose `out` is not looked at, are on the new mesh what octafront_mesh_field() gives. All must live until the job has
- * ended.
+/** -> mesh: move_mesh() of octafront/move.h, by three numbers for each point. The report has "history" and "notes". The
+ * fields, whose `out` is not looked at, are on the new mesh what octafront_mesh_field() gives. All must live until the
+ * job has ended.
  */
 octafront_job* octafront_move(const octafront_mesh* mesh, const double* displacement, const octafront_field* fields,
                               size_t count, const octafront_options* options, int threads);

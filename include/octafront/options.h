@@ -270,11 +270,23 @@ struct CarryOptions {
   /// Where the bodies differ, what the integral over a region lacks is spread over it. Else values stay the means over
   /// what is shared, and the integral changes with the volume: for what is no density, such as a modulus.
   bool keep_integrals = true;
+  /// Fields at nodes vary quadratically inside the old elements: by the values at mid-side nodes of a mesh of second
+  /// order, else by second derivatives fitted to what is around. No value leaves the range of the field.
+  bool quadratic_nodes = false;
+  /// Fields of elements, by name, with commas between, that have values at the four integration points of
+  /// quadratic tetrahedra (barycentric coordinates .585, .138, .138, .138; point i is the one near corner i): all
+  /// components of the first point, then those of the second, ...
+  std::string integration_points = {};
 };
 
 /// How a mesh is moved (octafront/move.h).
 struct MoveOptions {
   double least_quality = 0.2;  ///< beta (3 r / R) below which elements are mended between steps, in (0, 0.6]
+  /// Only the displacements of the boundary count; those inside follow them, harmonic.
+  bool boundary_alone = false;
+  /// Where elements are poor, the walls of the mesh as they have moved become the input of generate(), at the lengths
+  /// that edges had, instead of the mesh being adapted.
+  bool remesh = false;
 };
 
 /// What a mesh must keep: one that does not is not handed out, RequirementError says what it is like. Looked at last,

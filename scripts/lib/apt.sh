@@ -44,6 +44,8 @@ doc_packages=(doxygen python3-sphinx mypy)
 browser_packages=(chromium chromium-driver python3-selenium fonts-dejavu-core)
 # What reads manual, completions and schema (tests/cli): also of --all; without them these are read by fewer programs.
 shell_packages=(groff zsh fish python3-jsonschema)
+# What solves in loops with us (examples/solve): of --all.
+fem_packages=(python3-dolfinx)
 # What reads images beside us (tests/images): also of --all.
 image_packages=(python3-nibabel python3-pydicom libgdcm-dev libgdcm-tools libtiff-dev)
 # Other meshers, which some benchmarks run beside ours.

@@ -690,6 +690,28 @@ class CommandLine(unittest.TestCase):
                                     (("carry", old, new, "-o", new), 2, "overwritten"), (("carry", old, new, "-o", out, "--carry", "nosuch"), 3, "nosuch")):
             self.assertIn(said, self.run_cli(*words, status=status).stderr)
 
+    def test_carries_values_at_mid_side_nodes(self):
+        old, new, out, report = (self.dir / name for name in ("old.vtu", "new.msh", "out.vtk", "r.json"))
+        self.run_cli("mesh", SAMPLES / "bracket.stl", "-o", old, "--size", 8, "--order", 2, "--field", "T=300+x*x")
+        self.run_cli("mesh", SAMPLES / "bracket.stl", "-o", new, "--size", 5)
+        self.assertIn("--quadratic-nodes", self.run_cli("carry", old, new, "-o", out, status=3).stderr)
+
+        def error_of(file):
+            self.run_cli("carry", file, new, "-o", out, "--ascii", "--quadratic-nodes", "--carry", "T", "--json", report)
+            made = out.read_text()
+            count = int(made.split("POINTS ")[1].split()[0])
+            xs = [float(w) for w in made.split("POINTS ")[1].split()[2:2 + 3 * count]][0::3]
+            return sum(abs(300 + x * x - float(w)) for x, w in zip(xs, made.split("T 1 %d double" % count)[1].split())) / count
+        mean = error_of(old)
+        self.assertLess(mean, 0.1)  # linear elements of this size have 5
+        # Conversion keeps fields of all points, in any order that a format has them in.
+        self.run_cli("convert", old, "-o", self.dir / "other.msh")
+        self.assertAlmostEqual(error_of(self.dir / "other.msh"), mean, places=9)
+        self.run_cli("convert", old, "-o", self.dir / "corners.vtk", "--order", 1)
+        self.run_cli("carry", self.dir / "corners.vtk", new, "-o", out, "--carry", "T")
+        self.assertIn("left out: T", self.run_cli("convert", self.dir / "corners.vtk", "-o", self.dir / "high.vtu", "--order", 3).stdout)
+        self.assertIn("four points", self.run_cli("carry", old, new, "-o", out, "--quadratic-nodes", "--integration-points", "T", status=3).stderr)
+
     def test_level_sets_become_faces(self):
         start, out, report = self.dir / "in.vtu", self.dir / "out.vtu", self.dir / "r.json"
         self.run_cli("mesh", SAMPLES / "bracket.stl", "-o", start, "--size", 4, "--field", "phi=sqrt((x-5)^2+y^2+(z-4)^2)-9", "--field", "low=z-3")
@@ -723,6 +745,12 @@ class CommandLine(unittest.TestCase):
         self.assertEqual([f["name"] for f in told.get("carried", [{"name": "x"}])], ["x"])
         volume = json.loads(self.run_cli("info", bare, "--json", "-").stdout)["volume"]
         self.assertAlmostEqual(told["history"][-1]["volume"] / volume, 3, delta=0.03)
+        self.assertEqual([f["name"] for f in told["carried"]], ["x"])
+        # Only the boundary has a say; and what is poor is meshed anew.
+        self.run_cli("move", start, "--displacement", "u", "-o", out, "--boundary-alone", "--remesh", "--least-quality", ".4", "--json", report)
+        told = json.loads(report.read_text())
+        self.assertIn("remeshed", [step["change"] for step in told["history"]])
+        self.assertAlmostEqual(told["history"][-1]["volume"] / volume, 3, delta=0.05)
         out.unlink()
         self.assertIn("no field", moved("v", lambda x, y, z: "0 0 0", status=3).stderr)
         self.run_cli("move", start, "-o", out, status=2)

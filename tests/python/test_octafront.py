@@ -984,6 +984,21 @@ class Meshes(Case):
         with self.assertRaises(TypeError):
             octafront.carry(old, new, {"u": linear}, size=1)
 
+    def test_integration_points_go_to_another_mesh(self):
+        old, new = octafront.mesh(*cube(), size=0.2), octafront.mesh(*cube(), size=0.17)
+        near, far = 0.58541019662496845, 0.13819660112501051
+
+        def points_of(mesh):
+            corners = mesh.points[mesh.tets]
+            return far * corners.sum(1)[:, None] + (near - far) * corners
+        made = octafront.carry(old, new, {"S": points_of(old)}, integration_points="S")
+        self.assertEqual(made["S"].shape, (len(new.tets), 4, 3))
+        self.assertLess(np.median(np.abs(made["S"] - points_of(new))), 1e-12)
+        self.assertLess(made.report["carried"][0]["integral_error"], 1e-12)
+        self.assertEqual(made.report["carried"][0]["components"], 3)
+        quadratic = octafront.carry(old, new, {"u": old.points**2}, quadratic_nodes=True)["u"]
+        self.assertLess(np.abs(quadratic - new.points**2).max(), 1e-9)
+
     def test_meshes_move(self):
         old = octafront.mesh(*cube(), size=0.2)
         stretch = old.points * [8, 0, 0]

@@ -39,12 +39,49 @@ void require_field_of(const MeshField& field, const TetMesh& mesh) {
                                    field.values[i], i / field.components, what));
 }
 
+/// Where values are.
+enum class Kind { kNodes, kElements, kPoints };
+
+/// Whether CarryOptions::integration_points names it.
+bool is_at_points(const MeshField& field, const CarryOptions& options) {
+  const std::vector<std::string> names = names_listed(options.integration_points, {&field.name, 1});
+  return field.of_elements && std::find(names.begin(), names.end(), field.name) != names.end();
+}
+
+/// Throws InputError for a name that no field of elements has, or that has not four points.
+void require_four_points(std::span<const MeshField> fields, const CarryOptions& options) {
+  std::vector<std::string> known;
+  for (const MeshField& field : fields)
+    if (field.of_elements) known.push_back(field.name);
+  for (const std::string& name : names_listed(options.integration_points, known)) {
+    const auto field =
+        std::find_if(fields.begin(), fields.end(), [&](const MeshField& f) { return f.of_elements && f.name == name; });
+    if (field == fields.end())
+      throw InputError(fmt::format("integration_points: no field of elements is called \"{}\"", name));
+    if (field->components % 4 != 0)
+      throw InputError(
+          fmt::format("integration_points: the field \"{}\" has {} numbers in an element, not those of four points",
+                      name, field->components));
+  }
+}
+
+/// Which each is.
+std::vector<Kind> kinds_of(std::span<const MeshField> fields, const CarryOptions& options) {
+  require_four_points(fields, options);
+  std::vector<Kind> kinds;
+  for (const MeshField& field : fields) {
+    const Kind of_elements = is_at_points(field, options) ? Kind::kPoints : Kind::kElements;
+    kinds.push_back(field.of_elements ? of_elements : Kind::kNodes);
+  }
+  return kinds;
+}
+
 /// All fields of one kind as one with all their components.
 class JoinedFields {
  public:
-  JoinedFields(std::span<const MeshField> fields, bool of_elements, std::size_t count) {
+  JoinedFields(std::span<const MeshField> fields, std::span<const Kind> kinds, Kind kind, std::size_t count) {
     for (std::size_t f = 0; f < fields.size(); ++f)
-      if (fields[f].of_elements == of_elements) members_.push_back(f), components += fields[f].components;
+      if (kinds[f] == kind) members_.push_back(f), components += fields[f].components;
     values.resize(count * components);
     std::size_t first = 0;
     for (const std::size_t f : members_) {
@@ -121,20 +158,49 @@ void add_component(const MeshField& field, std::size_t k, const ComponentSums& s
   extent.integral.push_back(all.value()), extent.least.push_back(least), extent.greatest.push_back(greatest);
 }
 
-FieldReport report_of(const MeshField& old, const MeshField& made, const adapt::MeshPair& meshes) {
-  const MatchedRegions& regions = meshes.regions;
+/// Of values at points the means of the elements, which integrals are of.
+MeshField means_of_points(const MeshField& field) {
+  MeshField means{field.name, true, field.components / 4, {}};
+  for (std::size_t t = 0; t < field.values.size() / field.components; ++t)
+    for (std::size_t k = 0; k < means.components; ++k) {
+      double sum = 0;
+      for (std::size_t i = 0; i < 4; ++i) sum += field.values[t * field.components + i * means.components + k];
+      means.values.push_back(sum / 4);
+    }
+  return means;
+}
+
+void widen_to_points(const MeshField& field, FieldExtent& extent) {
+  const std::size_t n = extent.least.size();
+  for (std::size_t i = 0; i < field.values.size(); ++i) {
+    extent.least[i % n] = std::min(extent.least[i % n], field.values[i]);
+    extent.greatest[i % n] = std::max(extent.greatest[i % n], field.values[i]);
+  }
+}
+
+FieldReport report_of(const MeshField& old, const TetMesh& was, const MeshField& made, const TetMesh& now,
+                      const MatchedRegions& regions) {
   FieldReport report{old.name, old.of_elements, old.components, {}, {}, 0, 0};
   for (std::size_t k = 0; k < old.components; ++k) {
     const ComponentSums before =
-        component_sums(meshes.before, old, k, regions.count(), [&](TetIndex t) { return regions.of_old(t); });
+        component_sums(was, old, k, regions.count(), [&](TetIndex t) { return regions.of_old(t); });
     const ComponentSums after =
-        component_sums(meshes.now, made, k, regions.count(), [&](TetIndex t) { return regions.of_new(t); });
+        component_sums(now, made, k, regions.count(), [&](TetIndex t) { return regions.of_new(t); });
     add_component(old, k, before, report.before), add_component(made, k, after, report.after);
     for (std::size_t r = 0; r < regions.count() && old.of_elements; ++r)
       if (before.magnitude[r] > 0)
         report.integral_error =
             std::max(report.integral_error, std::abs(after.integral[r] - before.integral[r]) / before.magnitude[r]);
   }
+  return report;
+}
+
+/// `at_points`: fields of four values in each tet.
+FieldReport report_of_either(const MeshField& old, const TetMesh& was, const MeshField& made, const TetMesh& now,
+                             const MatchedRegions& regions, bool at_points) {
+  if (!at_points) return report_of(old, was, made, now, regions);
+  FieldReport report = report_of(means_of_points(old), was, means_of_points(made), now, regions);
+  widen_to_points(old, report.before), widen_to_points(made, report.after);
   return report;
 }
 
@@ -198,13 +264,15 @@ class FieldCarrier {
                const RunContext& context)
       : meshes_(meshes), options_(options), outside_(outside), context_(context), gone_(meshes) {}
 
-  void carry(std::span<const MeshField> fields, CarriedFields& made) const {
+  void carry(std::span<const MeshField> fields, CarriedFields& made) {
+    kinds_ = kinds_of(fields, options_);
     for (const MeshField& field : fields) made.fields.push_back({field.name, field.of_elements, field.components, {}});
-    carry_nodes(fields, made);
+    carry_nodes(fields, made), carry_points(fields, made);
     std::vector<double> beyond = carry_elements(fields, made);
     for (std::size_t f = 0; f < fields.size(); ++f)
-      made.report.fields.push_back(report_of(fields[f], made.fields[f], meshes_));
-    const JoinedFields all(fields, true, 0);
+      made.report.fields.push_back(report_of_either(fields[f], meshes_.before, made.fields[f], meshes_.now,
+                                                    meshes_.regions, kinds_[f] == Kind::kPoints));
+    const JoinedFields all(fields, kinds_, Kind::kElements, 0);
     if (!beyond.empty())
       all.for_each_component(fields, [&](std::size_t f, std::size_t, std::size_t k) {
         made.report.fields[f].beyond = std::max(made.report.fields[f].beyond, beyond[k]);
@@ -213,13 +281,20 @@ class FieldCarrier {
 
  private:
   void carry_nodes(std::span<const MeshField> fields, CarriedFields& made) const {
-    const JoinedFields all(fields, false, meshes_.before.points.size());
+    const JoinedFields all(fields, kinds_, Kind::kNodes, meshes_.before.points.size());
     if (all.components == 0) return;
-    all.give(carried_at_nodes(meshes_, gone_, all.old(), outside_, context_, made.report), made.fields);
+    all.give(carried_at_nodes(meshes_, gone_, all.old(), outside_, options_, context_, made.report), made.fields);
+  }
+
+  void carry_points(std::span<const MeshField> fields, CarriedFields& made) const {
+    for (std::size_t f = 0; f < fields.size(); ++f)
+      if (kinds_[f] == Kind::kPoints)
+        made.fields[f].values = carried_at_points(meshes_, gone_, {fields[f].values, fields[f].components}, options_,
+                                                  context_, made.report);
   }
 
   std::vector<double> carry_elements(std::span<const MeshField> fields, CarriedFields& made) const {
-    const JoinedFields all(fields, true, meshes_.before.tets.size());
+    const JoinedFields all(fields, kinds_, Kind::kElements, meshes_.before.tets.size());
     if (all.components == 0) return {};
     std::vector<double> values = carried_of_elements(meshes_, gone_, all.old(), options_, context_, made.report);
     std::vector<double> beyond;
@@ -233,9 +308,15 @@ class FieldCarrier {
   OutsideNodes outside_;
   const RunContext& context_;
   adapt::GoneTets gone_;
+  std::vector<Kind> kinds_;
 };
 
 }  // namespace
+
+FieldReport report_of_field(const MeshField& old, const TetMesh& before, const MeshField& made, const TetMesh& now,
+                            const CarryOptions& options) {
+  return report_of_either(old, before, made, now, MatchedRegions(before, now), is_at_points(old, options));
+}
 
 CarriedFields carry_fields(std::span<const MeshField> fields, const TetMesh& before, const TetMesh& now,
                            const CarryOptions& options, const RunContext& context, OutsideNodes outside,

@@ -1,6 +1,7 @@
 #include "adapt/carry/carry.h"
 #include "base/core/parallel.h"
 #include "base/geometry/triangle_tree.h"
+#include "base/mesh/edge_nodes.h"
 
 #include <algorithm>
 #include <array>
@@ -12,11 +13,12 @@ namespace {
 /// How far out a tet speaks, in parts of its height.
 constexpr double kFarthestOut = 1;
 
-/// Up to four old nodes, and the part that each has in a value.
-struct Mixture {
-  std::array<VertexIndex, 4> nodes{};
-  std::array<double, 4> parts{};
-};
+/// How far out of the straight tet a place may be whose parts are found in the curved one.
+constexpr double kOutOfStraight = 0.25;
+/// Each brings the parts nearer by how much elements bend.
+constexpr int kBendings = 12;
+/// What lies out of a curved tet by no more lies on it: two meshes of one curved body meet its walls in other places.
+constexpr double kOutOfCurved = 0.02;
 
 Mixture mixture_in(const TetMesh& mesh, TetIndex t, Vec3 p) {
   const TetCorners x = corners_in(mesh, t);
@@ -43,20 +45,36 @@ Mixture mixture_on(const TetMesh& mesh, const Triangle& triangle, Vec3 p) {
   return from_inside({{a, b, c, a}, {area(y, z), area(z, x), area(x, y), 0}});
 }
 
-/// Of those that hold p the one with the lowest number: they agree on their common faces.
-TetIndex holder_of(const TetMesh& mesh, const GoneTets& gone, Vec3 p) {
-  TetIndex holder = kNone;
-  gone.for_each_near({p, p}, [&](TetIndex t) {
-    if (t < holder && TetPlanes(corners_in(mesh, t)).holds(p)) holder = t;
-  });
-  return holder;
+/// In the tet as its mid-side nodes bend it: p less what they add where the parts are. Where that leads far out, the
+/// straight tet's.
+Mixture mixture_in_curved(const TetMesh& mesh, TetIndex t, Vec3 p) {
+  const Mixture straight = mixture_in(mesh, t, p);
+  std::array<Vec3, 6> bends;
+  for (std::size_t e = 0; e < 6; ++e) {
+    const auto& [i, j] = kTetEdges[e];
+    bends[e] = mesh.points[mesh.mid_nodes[t][e]] - (mesh.points[mesh.tets[t][i]] + mesh.points[mesh.tets[t][j]]) * 0.5;
+  }
+  Mixture found = straight;
+  for (int round = 0; round < kBendings; ++round) {
+    Vec3 at = p;
+    for (std::size_t e = 0; e < 6; ++e)
+      at -= 4 * found.parts[kTetEdges[e][0]] * found.parts[kTetEdges[e][1]] * bends[e];
+    found = mixture_in(mesh, t, at);
+    if (!(*std::min_element(found.parts.begin(), found.parts.end()) > -kOutOfStraight)) return straight;
+  }
+  return found;
 }
 
 /// Who speaks for each node of the new mesh.
 class NodeSources {
  public:
-  NodeSources(const MeshPair& meshes, const GoneTets& gone, OutsideNodes outside, const RunContext& context)
-      : meshes_(meshes), gone_(gone), mixtures_(meshes.now.points.size()), distance_(mixtures_.size(), -1) {
+  NodeSources(const MeshPair& meshes, const GoneTets& gone, OutsideNodes outside, bool is_quadratic,
+              const RunContext& context)
+      : meshes_(meshes),
+        gone_(gone),
+        is_curved_(is_quadratic && meshes.before.is_second_order()),
+        mixtures_(meshes.now.points.size()),
+        distance_(mixtures_.size(), -1) {
     constexpr std::size_t kBlock = 1 << 14;
     std::vector<std::vector<VertexIndex>> outside_of((mixtures_.size() + kBlock - 1) / kBlock);
     parallel_for(
@@ -77,18 +95,19 @@ class NodeSources {
       if (distance_[v] > report.farthest) report.farthest = distance_[v], report.farthest_at = meshes_.now.points[v];
   }
 
-  std::vector<double> values(const OldValues& old) const {
+  /// `bends`: null: of a linear field.
+  std::vector<double> values(const OldValues& old, const EdgeBends* bends) const {
     const std::size_t n = old.components;
     std::vector<double> made(mixtures_.size() * n);
     parallel_for(mixtures_.size(), [&](std::size_t v) {
-      for (std::size_t k = 0; k < n; ++k) made[v * n + k] = mixed(mixtures_[v], old, k);
+      for (std::size_t k = 0; k < n; ++k) made[v * n + k] = mixed(mixtures_[v], old, k, bends);
     });
     return made;
   }
 
  private:
   /// Rounding adds no extremes either.
-  static double mixed(const Mixture& mixture, const OldValues& old, std::size_t k) {
+  static double mixed(const Mixture& mixture, const OldValues& old, std::size_t k, const EdgeBends* bends) {
     double sum = 0, least = HUGE_VAL, greatest = -HUGE_VAL;
     bool is_mean = true;
     for (std::size_t i = 0; i < 4; ++i) {
@@ -97,6 +116,8 @@ class NodeSources {
       sum += part * value, is_mean = is_mean && part > 0;
       least = std::min(least, value), greatest = std::max(greatest, value);
     }
+    if (const double bend = bends == nullptr ? 0 : bends->bend(mixture, k); bend != 0)
+      return is_mean ? bends->in_range(sum + bend, k) : sum + bend;
     return is_mean ? std::clamp(sum, least, greatest) : sum;
   }
 
@@ -107,19 +128,43 @@ class NodeSources {
       mixtures_[v] = {{old, old, old, old}, {1, 0, 0, 0}};
       return true;
     }
-    const TetIndex holder = holder_of(meshes_.before, gone_, p);
-    if (holder != kNone) mixtures_[v] = from_inside(mixture_in(meshes_.before, holder, p));
-    return holder != kNone;
+    const TetIndex holder = holder_of(meshes_.before, gone_, p, [](TetIndex) { return true; });
+    if (holder != kNone) mixtures_[v] = in_tet(holder, p);
+    return holder != kNone || is_in_bend(v);
+  }
+
+  Mixture in_tet(TetIndex t, Vec3 p) const {
+    if (!is_curved_) return from_inside(mixture_in(meshes_.before, t, p));
+    Mixture mixture = mixture_in_curved(meshes_.before, t, p);
+    mixture.mids = meshes_.before.mid_nodes[t];
+    return mixture;
+  }
+
+  /// Outside of all straight tets, and in one that bulges.
+  bool is_in_bend(VertexIndex v) {
+    if (!is_curved_) return false;
+    const Vec3 p = meshes_.now.points[v];
+    const TetIndex t = gone_.nearest(p, [](TetIndex) { return true; });
+    if (t == kNone) return false;
+    const Mixture mixture = in_tet(t, p);
+    if (*std::min_element(mixture.parts.begin(), mixture.parts.end()) < -kOutOfCurved) return false;
+    mixtures_[v] = mixture;
+    return true;
   }
 
   void find_outside(OutsideNodes how) {
     const TriangleTree boundary(meshes_.before.points, meshes_.before.boundary);
+    const EdgeNodes mids(meshes_.before);
     parallel_for(outside_.size(), [&](std::size_t i) {
       const VertexIndex v = outside_[i];
       const Vec3 p = meshes_.now.points[v];
       const TriangleTree::Nearest nearest = boundary.nearest(p);
       distance_[v] = std::sqrt(nearest.squared_distance);
       mixtures_[v] = mixture_on(meshes_.before, meshes_.before.boundary[nearest.triangle], nearest.point);
+      if (is_curved_) {
+        const auto& [a, b, c, again] = mixtures_[v].nodes;
+        mixtures_[v].mids[0] = mids(a, b), mixtures_[v].mids[1] = mids(a, c), mixtures_[v].mids[3] = mids(b, c);
+      }
       if (how == OutsideNodes::kOnwards) go_onwards(v);
     });
   }
@@ -137,6 +182,7 @@ class NodeSources {
 
   const MeshPair& meshes_;
   const GoneTets& gone_;
+  bool is_curved_;  ///< fields and elements are quadratic
   std::vector<Mixture> mixtures_;
   std::vector<VertexIndex> outside_;
   std::vector<double> distance_;
@@ -145,10 +191,13 @@ class NodeSources {
 }  // namespace
 
 std::vector<double> carried_at_nodes(const MeshPair& meshes, const GoneTets& gone, const OldValues& old,
-                                     OutsideNodes outside, const RunContext& context, CarryReport& report) {
-  const NodeSources sources(meshes, gone, outside, context);
+                                     OutsideNodes outside, const CarryOptions& options, const RunContext& context,
+                                     CarryReport& report) {
+  const NodeSources sources(meshes, gone, outside, options.quadratic_nodes, context);
   sources.enter_into(report);
-  return sources.values(old);
+  if (!options.quadratic_nodes) return sources.values(old, nullptr);
+  const EdgeBends bends(meshes.before, old, context);
+  return sources.values(old, &bends);
 }
 
 }  // namespace octafront::adapt

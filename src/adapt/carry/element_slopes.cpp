@@ -4,6 +4,7 @@
 #include "base/core/parallel.h"
 #include "base/geometry/measures.h"
 #include "base/geometry/symmetric_matrix.h"
+#include "base/mesh/face_table.h"
 
 #include <algorithm>
 #include <limits>
@@ -31,6 +32,23 @@ ElementSlopes::ElementSlopes(const TetMesh& mesh, const MatchedRegions& regions,
   number_corners(regions);
   find_slopes_at_corners(values);
   find_slopes(values);
+}
+
+ElementSlopes ElementSlopes::of_corners(const TetMesh& mesh, std::span<const double> values, std::size_t components) {
+  ElementSlopes made(mesh, components);
+  made.slopes_.resize(mesh.tets.size() * components);
+  parallel_for(mesh.tets.size(), [&](std::size_t t) {
+    const Tet& tet = mesh.tets[t];
+    const double six = six_volumes(mesh.points[tet[0]], mesh.points[tet[1]], mesh.points[tet[2]], mesh.points[tet[3]]);
+    for (int i = 0; i < 4; ++i) {
+      const Triangle face = face_of(tet, i);
+      // Inward: what the corner's share of the place grows by.
+      const Vec3 grows = double_area_normal(mesh.points[face[0]], mesh.points[face[1]], mesh.points[face[2]]) / -six;
+      for (std::size_t k = 0; k < components; ++k)
+        made.slopes_[t * components + k] += values[(4 * t + static_cast<std::size_t>(i)) * components + k] * grows;
+    }
+  });
+  return made;
 }
 
 Vec3 ElementSlopes::centre(TetIndex t) const {

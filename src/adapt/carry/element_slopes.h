@@ -22,9 +22,14 @@ class ElementSlopes {
   ElementSlopes(const TetMesh& mesh, const MatchedRegions& regions, std::span<const double> values,
                 std::size_t components);
 
+  /// Those of functions that are linear in each element, by `components` values at each of its corners.
+  static ElementSlopes of_corners(const TetMesh& mesh, std::span<const double> values, std::size_t components);
+
   Vec3 slope(TetIndex t, std::size_t component) const { return slopes_[t * components_ + component]; }
 
  private:
+  ElementSlopes(const TetMesh& mesh, std::size_t components) : mesh_(mesh), components_(components) {}
+
   /// A vertex, as the elements of one region see it.
   using Corner = std::uint32_t;
 

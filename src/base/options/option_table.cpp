@@ -409,17 +409,37 @@ std::vector<Row<Options>> carry_rows() {
              "with the volume (a modulus, a temperature)")
               .called("keep_integrals"),
           [](auto& o) -> auto& { return o.carry.keep_integrals; }),
+      row(
+          of("quadratic_nodes",
+             "Fields at nodes vary quadratically inside old elements: by mid-side nodes, or second derivatives fitted "
+             "to what is around"),
+          [](auto& o) -> auto& { return o.carry.quadratic_nodes; }),
+      row(
+          of("integration_points",
+             "Fields of elements, names with commas between, that have values at the four integration points of "
+             "quadratic tetrahedra, point by point")
+              .takes("FIELD"),
+          [](auto& o) -> auto& { return o.carry.integration_points; }),
   };
 }
 
 std::vector<Row<Options>> move_rows() {
+  const auto of = [](std::string_view name, std::string_view help) { return About(name, "Motion", "move", help); };
   return {
       row(
-          About("least_quality", "Motion", "move", "Quality (3 r / R) below which elements are mended between steps")
+          of("least_quality", "Quality (3 r / R) below which elements are mended between steps")
               .takes("BETA")
               .above(0)
               .to(0.6),
           [](auto& o) -> auto& { return o.move.least_quality; }),
+      row(
+          of("boundary_alone", "Only the displacements of the boundary count; those inside follow them, harmonic"),
+          [](auto& o) -> auto& { return o.move.boundary_alone; }),
+      row(
+          of("remesh",
+             "Where elements are poor, the moved walls are meshed anew, at the lengths that edges had, instead of the "
+             "mesh being adapted"),
+          [](auto& o) -> auto& { return o.move.remesh; }),
   };
 }
 

@@ -358,7 +358,7 @@ octafront_job* octafront_carry(const octafront_mesh* before, const octafront_mes
             carry_fields(old, before->mesh, now->mesh, job.options_of(options).carry, job.context(),
                          adapted != 0 ? OutsideNodes::kOnwards : OutsideNodes::kNearest, is_known ? &same : nullptr);
         job.report["carry"] = Json::parse(to_json(made.report));
-        job.report["carried"] = Json::parse(fields_to_json(made.report));
+        job.report["carried"] = Json::parse(to_json(made.report.fields));
         for (std::size_t f = 0; f < count; ++f)
           std::copy(made.fields[f].values.begin(), made.fields[f].values.end(), fields[f].out);
       },
@@ -376,6 +376,8 @@ octafront_job* octafront_move(const octafront_mesh* mesh, const double* displace
         MovedMesh moved =
             move_mesh(mesh->mesh, by, fields_from(fields, count, mesh->mesh), job.options_of(options), job.context());
         job.report["history"] = Json::parse(to_json(moved.history));
+        job.report["notes"] = moved.notes;
+        job.report["carried"] = Json::parse(to_json(moved.carried));
         give(job, std::move(moved.mesh));
         job.mesh->fields = std::move(moved.fields);
       },

@@ -7,6 +7,8 @@
 
 #include <algorithm>
 #include <cmath>
+#include <numeric>
+#include <tuple>
 
 #include <fmt/core.h>
 
@@ -42,6 +44,7 @@ class FieldTaker {
     const std::size_t n = raw.points.empty() ? 0 : raw.field.at_points.size() / raw.points.size();
     const bool has_tets = !raw.field.at_tets.empty();
     const std::size_t of_tet = raw.tets.empty() ? 0 : raw.field.at_tets.size() / raw.tets.size();
+    if (n > 0) put_in_order(raw, n);
     if (n == 0 && !has_tets) leave_out(name, "it has not one for each point, or each tetrahedron");
     if (n > 0) add({name, false, n, std::move(raw.field.at_points)}, n * mesh_.points.size());
     if (has_tets) add({name, true, of_tet, std::move(raw.field.at_tets)}, of_tet * mesh_.tets.size());
@@ -52,12 +55,42 @@ class FieldTaker {
   FieldsOfFile out;
 
  private:
-  void require_same(const io::RawMesh& raw) const {
-    if (raw.points == mesh_.points && raw.tets.size() == mesh_.tets.size()) return;
-    input_.fail(fmt::format(
-        "its {} points are not those of the mesh, {}: points of no element, or elements of second order, and "
-        "fields are of linear ones (octafront convert --order 1)",
-        raw.points.size(), mesh_.points.size()));
+  void require_same(const io::RawMesh& raw) {
+    if (raw.tets.size() == mesh_.tets.size()) {
+      if (raw.points == mesh_.points) return;
+      if (mesh_.order() > 1 && find_order(raw.points)) return;
+    }
+    input_.fail(fmt::format("its {} points are not those of the mesh, {}: there are points of no element",
+                            raw.points.size(), mesh_.points.size()));
+  }
+
+  /// Whether the points are the same in another order: that of the file is kept for corners alone.
+  bool find_order(const std::vector<Vec3>& points) {
+    const auto ascending = [](const std::vector<Vec3>& of) {
+      std::vector<VertexIndex> order(of.size());
+      std::iota(order.begin(), order.end(), 0);
+      std::sort(order.begin(), order.end(), [&](VertexIndex a, VertexIndex b) {
+        return std::tie(of[a].x, of[a].y, of[a].z) < std::tie(of[b].x, of[b].y, of[b].z);
+      });
+      return order;
+    };
+    const std::vector<VertexIndex> theirs = ascending(points), ours = ascending(mesh_.points);
+    if (points.size() != mesh_.points.size()) return false;
+    of_ours_.resize(ours.size());
+    for (std::size_t i = 0; i < ours.size(); ++i) {
+      if (points[theirs[i]] != mesh_.points[ours[i]] || (i > 0 && points[theirs[i]] == points[theirs[i - 1]]))
+        return false;
+      of_ours_[ours[i]] = theirs[i];
+    }
+    return true;
+  }
+
+  void put_in_order(io::RawMesh& raw, std::size_t components) const {
+    if (of_ours_.empty()) return;
+    std::vector<double> values;
+    for (const VertexIndex v : of_ours_)
+      for (std::size_t k = 0; k < components; ++k) values.push_back(raw.field.at_points[v * components + k]);
+    raw.field.at_points = std::move(values);
   }
 
   void add(MeshField field, std::size_t expected) {
@@ -74,6 +107,7 @@ class FieldTaker {
   const TetMesh& mesh_;
   bool is_strict_;
   std::string why_;
+  std::vector<VertexIndex> of_ours_;  ///< per point of the mesh that of the file; empty: the same
 };
 
 }  // namespace

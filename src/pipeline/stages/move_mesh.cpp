@@ -12,10 +12,16 @@
 #include "base/geometry/measures.h"
 #include "base/geometry/predicates.h"
 #include "base/geometry/self_intersection.h"
+#include "base/labels/labels.h"
+#include "base/mesh/periodic_nodes.h"
+#include "pipeline/stages/domain_of_mesh.h"
+#include "pipeline/stages/harmonic_inside.h"
+#include "pipeline/stages/stages.h"
 
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <memory>
 #include <optional>
 #include <utility>
 
@@ -32,6 +38,49 @@ constexpr double kShortestStep = 1e-4;
 constexpr double kContactFound = 1e-3;
 /// How often contact is looked for on the way of one step at most.
 constexpr double kMostLooks = 200;
+/// A body of less than this part of its volume is flat.
+constexpr double kFlat = 1e-6;
+/// Pairs of a periodic mesh may differ by this in what they move by, in parts of the longest way: solvers and files
+/// round.
+constexpr double kSameWay = 1e-5;
+
+/// How far the periods of a mesh move with its pairs. Throws InputError where pairs do not stay copies.
+std::vector<Vec3> ways_of_periods(const TetMesh& mesh, std::span<const Vec3> ways) {
+  double farthest = 0;
+  for (const Vec3& w : ways) farthest = std::max(farthest, length(w));
+  std::vector<std::optional<Vec3>> found(mesh.periods.size());
+  for (const auto& [period, copy, original] : mesh.periodic_nodes) {
+    Vec3 led = ways[original];
+    if (!mesh.period_rotations.empty()) {
+      const auto& [x, y, z] = mesh.period_rotations[period];
+      led = {dot(x, led), dot(y, led), dot(z, led)};
+    }
+    if (!found[period]) found[period] = ways[copy] - led;
+    if (distance(ways[copy] - led, *found[period]) > kSameWay * farthest)
+      throw InputError(fmt::format(
+          "the motion is not periodic: at {} the copy moves by another way than its original leads to (point {} of {})",
+          at_point(mesh.points[copy]), copy, original));
+  }
+  std::vector<Vec3> all;
+  for (const auto& way : found) all.push_back(way.value_or(Vec3{}));
+  return all;
+}
+
+/// Paired nodes and periods on a grid as fine as floating point is at the largest of them: so copies of copies come to
+/// the same place by whichever period first.
+void make_sums_exact(TetMesh& mesh) {
+  double largest = 0;
+  const auto look = [&](const Vec3& p) { largest = std::max({largest, std::abs(p.x), std::abs(p.y), std::abs(p.z)}); };
+  for (const auto& [period, copy, original] : mesh.periodic_nodes) look(mesh.points[copy]), look(mesh.points[original]);
+  for (const Vec3& t : mesh.periods) look(t);
+  // Room for sums of four.
+  const double step = std::ldexp(1.0, std::ilogb(largest) - std::numeric_limits<double>::digits + 3);
+  const auto snap = [step](Vec3& p) {
+    for (const auto k : {&Vec3::x, &Vec3::y, &Vec3::z}) p.*k = step * std::round(p.*k / step);
+  };
+  for (const auto& [period, copy, original] : mesh.periodic_nodes) snap(mesh.points[copy]), snap(mesh.points[original]);
+  for (Vec3& t : mesh.periods) snap(t);
+}
 
 class Mover {
  public:
@@ -41,6 +90,8 @@ class Mover {
     made_.mesh = mesh, made_.fields.assign(fields.begin(), fields.end());
     make_linear(made_.mesh);
     left_.resize(made_.mesh.points.size());
+    can_change_ = made_.mesh.wide_cells.empty() && made_.mesh.periods.empty();
+    mark_wide();
     for (const Metric& m : metrics::of_edges(made_.mesh)) lengths_.push_back(1 / std::sqrt(m.xx));
     // Improvement that may turn a whole mesh over is for the end; here poor places are enough.
     options_.improve.level = ImproveOptions::Level::kFast;
@@ -64,7 +115,21 @@ class Mover {
     return points;
   }
 
-  /// The least beta; negative where an element is not positive by exact sign.
+  /// Copies go where the periods, which move too, lead their originals. Copies of copies come there in as many rounds
+  /// as there are periods.
+  void go(double part) {
+    const std::vector<Vec3> ways = ways_of_periods(made_.mesh, left_);
+    made_.mesh.points = points_after(part);
+    for (std::size_t k = 0; k < ways.size(); ++k) made_.mesh.periods[k] += part * ways[k];
+    if (!ways.empty()) make_sums_exact(made_.mesh);
+    for (std::size_t round = 0; round < ways.size(); ++round)
+      for (const auto& [period, copy, original] : made_.mesh.periodic_nodes)
+        made_.mesh.points[copy] = led_by_period(made_.mesh, period, made_.mesh.points[original]);
+    for (Vec3& w : left_) w = (1 - part) * w;
+    done_ = part == 1 ? 1 : done_ + part * (1 - done_);
+  }
+
+  /// The least beta, but of wedges and pyramids; negative where an element is not positive by exact sign.
   double poorest(const std::vector<Vec3>& p) const {
     const auto bad = parallel_find(made_.mesh.tets.size(), [&](std::size_t t) {
       const auto& [a, b, c, d] = made_.mesh.tets[t];
@@ -72,7 +137,10 @@ class Mover {
     });
     if (bad < made_.mesh.tets.size()) return -1;
     double least = 1;
-    for (const auto& [a, b, c, d] : made_.mesh.tets) least = std::min(least, tet_radius_ratio(p[a], p[b], p[c], p[d]));
+    for (TetIndex t = 0; t < made_.mesh.tets.size(); ++t) {
+      const auto& [a, b, c, d] = made_.mesh.tets[t];
+      if (!is_wide_[t]) least = std::min(least, tet_radius_ratio(p[a], p[b], p[c], p[d]));
+    }
     return least;
   }
 
@@ -89,6 +157,7 @@ class Mover {
   }
 
   void take_step() {
+    if (options_.move.boundary_alone) left_ = harmonic_inside(made_.mesh, std::move(left_), context_);
     const double wanted = quality_to_keep();
     double part = 1;
     while (poorest(points_after(part)) < wanted) {
@@ -96,16 +165,14 @@ class Mover {
       if (part * (1 - done_) < kShortestStep) refuse_to_follow();
     }
     look_for_contact(part);
-    made_.mesh.points = points_after(part);
-    for (Vec3& w : left_) w = (1 - part) * w;
-    done_ = part == 1 ? 1 : done_ + part * (1 - done_);
+    go(part);
   }
 
   [[noreturn]] void refuse_to_follow() const {
     throw MeshingError(fmt::format(
-        "elements cannot follow the motion beyond {:.2f} % of it, though they are mended: it folds the body, or is "
+        "elements cannot follow the motion beyond {:.2f} % of it, though they are {}: it folds the body, or is "
         "not smooth at the length of elements",
-        100 * done_));
+        100 * done_, can_change_ ? "mended" : "improved (beside wedges, pyramids and pairs they are not adapted)"));
   }
 
   /// On the way, too, each time that something went by the length of an edge against the rest: nothing as thick as an
@@ -146,13 +213,7 @@ class Mover {
   }
 
   void mend() {
-    const char* change = "moved";
-    if (poorest(made_.mesh.points) < options_.move.least_quality) {
-      change = "improved";
-      Improved better = improve_existing(made_.mesh, options_, nullptr, context_);
-      take(std::move(better.mesh), nullptr);
-      if (poorest(made_.mesh.points) < options_.move.least_quality) change = "adapted", adapt();
-    }
+    const char* change = poorest(made_.mesh.points) < options_.move.least_quality ? mended() : "moved";
     const QualitySummary quality = summarize_quality(made_.mesh);
     MoveStep step{done_, change, made_.mesh.tets.size(), quality.beta_min, quality.beta_mean, 0};
     for (const auto& [a, b, c, d] : made_.mesh.tets) {
@@ -162,12 +223,60 @@ class Mover {
     made_.history.push_back(std::move(step));
   }
 
+  /// What was done in the end.
+  const char* mended() {
+    Improved better = improve_existing(made_.mesh, options_, nullptr, context_);
+    take(std::move(better.mesh), nullptr);
+    if (poorest(made_.mesh.points) >= options_.move.least_quality || !can_change_) return "improved";
+    if (!options_.move.remesh) {
+      adapt();
+      if (poorest(made_.mesh.points) >= kQualityOfSteps * options_.move.least_quality) return "adapted";
+    }
+    return remesh() ? "remeshed" : "adapted";
+  }
+
   void adapt() {
     MetricMesh wanted{made_.mesh.points, made_.mesh.tets, {}, {}, "the lengths that the mesh had"};
     for (const double h : lengths_) wanted.metrics.push_back(Metric::of_size(h));
     AdaptedMesh adapted = adapt_to_metric(made_.mesh, wanted, options_, context_);
     const KnownItems same{adapted.old_of_new, adapted.old_tet_of_new};
     take(std::move(adapted.mesh), &same);
+  }
+
+  /// Whether it is better: the moved walls meshed anew.
+  bool remesh() {
+    Options options = options_;
+    options.size = {}, options.layers = {};
+    options.size.mesh = std::make_shared<SizeMesh>(
+        SizeMesh{made_.mesh.points, made_.mesh.tets, {}, lengths_, {}, "the lengths that the mesh had"});
+    try {
+      TetMesh anew = meshed_anew(made_.mesh, options, context_);
+      if (!options_.move.remesh && summarize_quality(anew).beta_min <= poorest(made_.mesh.points)) return false;
+      tell_lost();
+      take(std::move(anew), nullptr);
+      return true;
+    } catch (const MeshingError&) {
+      if (options_.move.remesh) throw;
+      return false;
+    }
+  }
+
+  /// What domain_of() has no place for.
+  void tell_lost() {
+    std::string lost;
+    const auto add = [&](const std::string& name) { lost += (lost.empty() ? "" : ", ") + name; };
+    for (const std::string& name : made_.mesh.curve_names) add(name);
+    for (const NamedSet& set : made_.mesh.sets)
+      if (set.kind == NamedSet::Kind::kElements) add(set.name);
+    if (lost.empty()) return;
+    made_.notes.push_back(fmt::format(
+        "meshed anew at {:.1f} % of the motion, and without these curves and sets of elements: {}", 100 * done_, lost));
+  }
+
+  void mark_wide() {
+    is_wide_.assign(made_.mesh.tets.size(), 0);
+    for (const WideCell& cell : made_.mesh.wide_cells)
+      for (std::uint32_t i = 0; i < cell.tet_count; ++i) is_wide_[cell.first + i] = 1;
   }
 
   /// All that is known goes to another mesh of the body as it is now.
@@ -183,25 +292,54 @@ class Mover {
       left_[v] = {all.back().values[3 * v], all.back().values[3 * v + 1], all.back().values[3 * v + 2]};
     all.pop_back();
     made_.fields = std::move(all), made_.mesh = std::move(now);
+    mark_wide();
   }
 
   Options options_;
   const RunContext& context_;
   MovedMesh made_;
-  std::vector<Vec3> left_;       ///< of the displacement of each point
-  std::vector<double> lengths_;  ///< wanted at each point
+  std::vector<Vec3> left_;             ///< of the displacement of each point
+  std::vector<double> lengths_;        ///< wanted at each point
+  std::vector<std::uint8_t> is_wide_;  ///< per tet: of a wedge or pyramid
+  bool can_change_ = true;             ///< by more than improvement
   double done_ = 0;
 };
 
-void require_movable(const TetMesh& mesh, std::span<const Vec3> displacement, const RunContext& context) {
+void require_movable(const TetMesh& mesh, std::span<const Vec3> displacement, bool boundary_alone,
+                     const RunContext& context) {
   if (displacement.size() != mesh.points.size())
     throw InputError(
         fmt::format("there are {} displacements, and the mesh has {} points", displacement.size(), mesh.points.size()));
+  std::vector<std::uint8_t> counts(displacement.size(), boundary_alone ? 0 : 1);
+  for (const Triangle& face : mesh.boundary)
+    for (const VertexIndex v : face)
+      if (v < counts.size()) counts[v] = 1;
   for (std::size_t v = 0; v < displacement.size(); ++v)
-    if (!is_finite(displacement[v])) throw InputError(fmt::format("the displacement of point {} is not finite", v));
+    if (counts[v] && !is_finite(displacement[v]))
+      throw InputError(fmt::format("the displacement of point {} is not finite", v));
   if (const auto defect = first_defect(mesh, context)) throw InputError("not a valid mesh: " + *defect);
-  if (!mesh.wide_cells.empty() || !mesh.periods.empty() || !mesh.split_faces.empty())
-    throw InputError("a mesh with wedges, pyramids, periodic or split faces cannot be moved");
+  if (!mesh.split_faces.empty()) throw InputError("a mesh with split faces cannot be moved");
+}
+
+/// What the boundary encloses when all is done.
+double volume_after(const TetMesh& mesh, std::span<const Vec3> displacement) {
+  const VertexIndex first = mesh.boundary.front()[0];
+  const Vec3 origin = mesh.points[first] + displacement[first];
+  double sum = 0;
+  for (const auto& [a, b, c] : mesh.boundary) {
+    const auto at = [&](VertexIndex v) { return mesh.points[v] + displacement[v] - origin; };
+    sum += dot(at(a), cross(at(b), at(c))) / 6;
+  }
+  return sum;
+}
+
+/// No way of mending helps, and trying would take long.
+void refuse_flat(const TetMesh& mesh, std::span<const Vec3> displacement) {
+  const double before = enclosed_volume(boundary_of(mesh)), after = volume_after(mesh, displacement);
+  if (after > kFlat * before) return;
+  throw MeshingError(
+      fmt::format("the motion would press the body flat or turn it inside out: of its volume {:.6g} it leaves {:.3g}",
+                  before, after));
 }
 
 }  // namespace
@@ -209,8 +347,12 @@ void require_movable(const TetMesh& mesh, std::span<const Vec3> displacement, co
 MovedMesh move_mesh(const TetMesh& mesh, std::span<const Vec3> displacement, std::span<const MeshField> fields,
                     const Options& options, const RunContext& context) {
   const ThreadLimit limit(context.threads);
-  require_movable(mesh, displacement, context);
-  return Mover(mesh, displacement, fields, options, context).move();
+  require_movable(mesh, displacement, options.move.boundary_alone, context);
+  refuse_flat(mesh, displacement);
+  MovedMesh made = Mover(mesh, displacement, fields, options, context).move();
+  for (std::size_t f = 0; f < fields.size(); ++f)
+    made.carried.push_back(report_of_field(fields[f], mesh, made.fields[f], made.mesh, options.carry));
+  return made;
 }
 
 }  // namespace octafront

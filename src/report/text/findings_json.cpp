@@ -135,9 +135,9 @@ std::string to_json(const std::vector<MoveStep>& history) {
   return all.dump(2, ' ', false, Json::error_handler_t::replace);
 }
 
-std::string fields_to_json(const CarryReport& report) {
+std::string to_json(const std::vector<FieldReport>& fields) {
   Json all = Json::array();
-  for (const FieldReport& f : report.fields)
+  for (const FieldReport& f : fields)
     all.push_back({{"name", f.name},
                    {"of", f.of_elements ? "elements" : "points"},
                    {"components", f.components},

@@ -1,11 +1,13 @@
 #include <octafront/adapt.h>
 #include <octafront/carry.h>
 #include <octafront/error.h>
+#include <octafront/generate.h>
 #include <octafront/improve_existing.h>
 
 #include "base/core/elementary.h"
 #include "base/geometry/measures.h"
 #include "improve/start_meshes.h"
+#include "support/named_surfaces.h"
 
 #include <algorithm>
 #include <cmath>
@@ -114,23 +116,24 @@ TEST(CarryFields, RegionsDoNotMixAndAreMatchedByName) {
   EXPECT_EQ(mixed.report.notes.size(), 1u);
 }
 
-/// The relative error in L1, and the same mesh sizes halved.
-double order_of(bool linear) {
+/// By which the error in L1 falls with the size of the elements. `field_on(mesh)` is exact.
+template <class FieldOn>
+double order_of(int n, const FieldOn& field_on, const CarryOptions& options) {
   std::vector<double> errors;
-  for (const int n : {6, 12}) {
-    const TetMesh old = perturbed(kuhn_cube(n), 0.2, 1), now = perturbed(kuhn_cube(n + 1), 0.2, 2);
-    const auto made = carry_one(of_elements(old, wave), old, now, {.linear_elements = linear}).fields[0].values;
+  for (const int cells : {n, 2 * n}) {
+    const TetMesh old = perturbed(kuhn_cube(cells), 0.2, 1), now = perturbed(kuhn_cube(cells + 1), 0.2, 2);
+    const auto made = carry_one(field_on(old, wave), old, now, options).fields[0].values;
+    const auto wanted = field_on(now, wave).values;
     double error = 0;
-    for (TetIndex t = 0; t < now.tets.size(); ++t)
-      error += volume_at(now, t) * std::abs(made[t] - wave(middle_in(now, t)));
-    errors.push_back(error);
+    for (std::size_t i = 0; i < made.size(); ++i) error += std::abs(made[i] - wanted[i]);
+    errors.push_back(error / static_cast<double>(made.size()));
   }
   return std::log2(errors[0] / errors[1]);
 }
 
 TEST(CarryFields, ElementsConvergeByTheirOrder) {
-  EXPECT_GT(order_of(false), 0.8);
-  EXPECT_GT(order_of(true), 1.7);
+  EXPECT_GT(order_of(6, of_elements, {}), 0.8);
+  EXPECT_GT(order_of(6, of_elements, {.linear_elements = true}), 1.7);
 }
 
 TEST(CarryFields, LinearElementsAreExactForLinearFunctionsInside) {
@@ -162,6 +165,86 @@ TEST(CarryFields, NodesAreLinearInsideAndNearestOutside) {
   }
   EXPECT_GT(longer.report.outside_nodes, 36u);
   EXPECT_DOUBLE_EQ(longer.report.farthest, 0.5);
+}
+
+double bowl(Vec3 p) {
+  return 1 + p.x - 2 * p.y + 3 * p.x * p.x - p.y * p.z + 0.5 * p.z * p.z;
+}
+
+TEST(CarryFields, QuadraticNodesAreExactForQuadraticFunctions) {
+  const TetMesh old = perturbed(kuhn_cube(6), 0.2, 1), now = perturbed(kuhn_cube(7), 0.2, 2);
+  const auto made = carry_one(at_nodes(old, bowl), old, now, {.quadratic_nodes = true}).fields[0].values;
+  const auto linear = carry_one(at_nodes(old, bowl), old, now).fields[0].values;
+  double worst = 0, worst_linear = 0;
+  for (std::size_t v = 0; v < now.points.size(); ++v) {
+    worst = std::max(worst, std::abs(made[v] - bowl(now.points[v])));
+    worst_linear = std::max(worst_linear, std::abs(linear[v] - bowl(now.points[v])));
+  }
+  EXPECT_LT(worst, 1e-9);
+  EXPECT_GT(worst_linear, 1e-3);
+}
+
+TEST(CarryFields, NodesConvergeByTheirOrder) {
+  EXPECT_GT(order_of(8, at_nodes, {}), 1.7);
+  EXPECT_GT(order_of(8, at_nodes, {.quadratic_nodes = true}), 2.7);
+}
+
+/// A ball of second order, its mid-side nodes on the sphere.
+TetMesh curved_ball(double size) {
+  Options options;
+  options.size.size = size, options.order = 2;
+  const SurfaceMesh sphere = testing::icosphere(4);
+  TetMesh ball = generate(sphere, options).mesh;
+  return ball;
+}
+
+TEST(CarryFields, MidSideNodesSpeakInsideCurvedElements) {
+  const TetMesh old = curved_ball(0.3), now = curved_ball(0.22);
+  ASSERT_TRUE(old.is_second_order());
+  double mean[2] = {0, 0};
+  for (const bool quadratic : {false, true}) {
+    const auto made = carry_one(at_nodes(old, wave), old, now, {.quadratic_nodes = quadratic}).fields[0].values;
+    for (std::size_t v = 0; v < now.points.size(); ++v)
+      mean[quadratic] += std::abs(made[v] - wave(now.points[v])) / static_cast<double>(now.points.size());
+  }
+  EXPECT_LT(mean[true], 0.2 * mean[false]);
+}
+
+/// Four values in each element.
+MeshField at_integration_points(const TetMesh& mesh, const Function& f) {
+  MeshField field{"S", true, 4, {}};
+  for (const Tet& tet : mesh.tets)
+    for (const VertexIndex near : tet) {
+      Vec3 p = (0.58541019662496845 - 0.13819660112501051) * mesh.points[near];
+      for (const VertexIndex v : tet) p += 0.13819660112501051 * mesh.points[v];
+      field.values.push_back(f(p));
+    }
+  return field;
+}
+
+TEST(CarryFields, IntegrationPointsKeepMeansAndRange) {
+  const TetMesh old = perturbed(kuhn_cube(6), 0.2, 1), now = perturbed(kuhn_cube(7), 0.2, 2);
+  const CarryOptions options{.integration_points = "S"};
+  const MeshField field = at_integration_points(old, wave);
+  EXPECT_EQ(carry_one(field, old, old, options).fields[0].values, field.values);
+  const CarriedFields made = carry_one(field, old, now, options);
+  const FieldReport& report = made.report.fields.front();
+  EXPECT_EQ(report.components, 1u);
+  EXPECT_LT(report.integral_error, 1e-14);
+  EXPECT_GE(report.after.least[0], report.before.least[0]);
+  EXPECT_LE(report.after.greatest[0], report.before.greatest[0]);
+  const auto linear = [](Vec3 p) { return 1 + 2 * p.x - 3 * p.y + p.z; };
+  const auto values = carry_one(at_integration_points(old, linear), old, now, options).fields[0].values;
+  const auto wanted = at_integration_points(now, linear).values;
+  double worst = 0;
+  for (std::size_t i = 0; i < values.size(); ++i) worst = std::max(worst, std::abs(values[i] - wanted[i]));
+  // The outermost points of the new mesh are beyond those of the old one, whose range is kept.
+  EXPECT_LT(worst, 0.2);
+  std::size_t exact = 0;
+  for (std::size_t i = 0; i < values.size(); ++i) exact += std::abs(values[i] - wanted[i]) < 1e-9;
+  EXPECT_GT(exact, values.size() * 9 / 10);
+  EXPECT_THROW(carry_one(field, old, now, {.integration_points = "T"}), InputError);
+  EXPECT_THROW(carry_one(of_elements(old, wave), old, now, {.integration_points = "f"}), InputError);
 }
 
 TEST(CarryFields, BodiesThatDifferKeepTheIntegralOrTheValues) {

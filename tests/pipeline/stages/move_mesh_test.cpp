@@ -1,11 +1,15 @@
 #include <octafront/error.h>
+#include <octafront/generate.h>
 #include <octafront/move.h>
 #include <octafront/validity.h>
 
 #include "base/core/elementary.h"
 #include "base/geometry/measures.h"
 #include "improve/start_meshes.h"
+#include "support/mixed_mesh.h"
+#include "support/named_surfaces.h"
 
+#include <algorithm>
 #include <functional>
 #include <limits>
 #include <string>
@@ -143,6 +147,100 @@ TEST(MoveMesh, WhatFoldsTheBodyOrIsNoMotionIsRefused) {
   EXPECT_THROW(move_mesh(mesh, none), InputError);
   none.push_back({std::numeric_limits<double>::infinity(), 0, 0});
   EXPECT_THROW(move_mesh(mesh, none), InputError);
+}
+
+TEST(MoveMesh, WhatIsInsideFollowsTheBoundaryAlone) {
+  const TetMesh mesh = kuhn_cube(4);
+  std::vector<std::uint8_t> is_inside(mesh.points.size(), 1);
+  for (const Triangle& f : mesh.boundary)
+    for (const VertexIndex v : f) is_inside[v] = 0;
+  const auto turned = [](Vec3 p) { return Vec3{-p.y + 5, 1.5 * p.x, p.z + 0.3 * p.x}; };
+  std::vector<Vec3> displacement = displacement_on(mesh, turned);
+  for (std::size_t v = 0; v < mesh.points.size(); ++v)
+    if (is_inside[v]) displacement[v] = Vec3{} * std::numeric_limits<double>::quiet_NaN();
+  EXPECT_THROW(move_mesh(mesh, displacement), InputError);
+  Options options;
+  options.move.boundary_alone = true;
+  const MovedMesh moved = move_mesh(mesh, displacement, {}, options);
+  ASSERT_EQ(moved.history.size(), 1u);
+  for (std::size_t v = 0; v < mesh.points.size(); ++v)
+    EXPECT_LT(distance(moved.mesh.points[v], turned(mesh.points[v])), 1e-10);
+}
+
+TEST(MoveMesh, WhatIsMeshedAnewKeepsItsPartsAndWhatIsKnown) {
+  TetMesh mesh = bar();
+  mesh.region.clear();
+  for (const Tet& t : mesh.tets) {
+    const double x = mesh.points[t[0]].x + mesh.points[t[1]].x + mesh.points[t[2]].x + mesh.points[t[3]].x;
+    mesh.region.push_back(x < 8 ? 0 : 1);
+  }
+  mesh.region_names = {"left", "right"};
+  mesh.sets.push_back({"some", NamedSet::Kind::kElements, {0, 1, 2}});
+  MeshField mass{"mass", true, 1, {}};
+  for (const std::uint32_t r : mesh.region) mass.values.push_back(1 + r);
+  Options options;
+  options.move.remesh = true, options.move.least_quality = 0.4;
+  const auto drawn = [](Vec3 p) { return Vec3{3 * p.x, p.y, p.z}; };
+  const MovedMesh moved = move_mesh(mesh, displacement_on(mesh, drawn), std::vector{mass}, options);
+  EXPECT_EQ(first_defect(moved.mesh), std::nullopt);
+  EXPECT_TRUE(std::any_of(moved.history.begin(), moved.history.end(),
+                          [](const MoveStep& step) { return step.change == "remeshed"; }));
+  EXPECT_GE(moved.history.back().beta_min, 0.2);
+  EXPECT_EQ(moved.mesh.region_names, mesh.region_names);
+  ASSERT_GE(moved.mesh.patch_names.size(), 3u);
+  for (std::size_t f = 0; f < moved.mesh.boundary.size(); ++f) {
+    double x = 0;
+    for (const VertexIndex v : moved.mesh.boundary[f]) x += moved.mesh.points[v].x / 3;
+    EXPECT_EQ(moved.mesh.patch_names[moved.mesh.patch[f]], x == 0 ? "low" : x == 12 ? "high" : "side");
+  }
+  EXPECT_NEAR(volume_of_mesh_moved(moved.mesh), 12, 1e-6);
+  for (TetIndex t = 0; t < moved.mesh.tets.size(); ++t) {
+    double x = 0;
+    for (const VertexIndex v : moved.mesh.tets[t]) x += moved.mesh.points[v].x / 4;
+    EXPECT_EQ(moved.mesh.region[t], x < 6 ? 0u : 1u);
+    EXPECT_EQ(moved.fields[0].values[t], 1 + moved.mesh.region[t]);
+  }
+  ASSERT_EQ(moved.notes.size(), 1u);
+  EXPECT_NE(moved.notes[0].find("some"), std::string::npos);
+}
+
+TEST(MoveMesh, PeriodsMoveWithTheirPairs) {
+  Options options;
+  options.size.size = 0.4, options.periodic = "xyz";
+  const TetMesh mesh = generate(testing::cube(1), options).mesh;
+  ASSERT_EQ(mesh.periods.size(), 3u);
+  const auto sheared = [](Vec3 p) {
+    return Vec3{1.1 * p.x + 0.3 * p.y + 0.03 * elementary::sin(6.283185307179586 * p.x), 0.7 * p.z - 0.1 * p.x + p.y,
+                p.z + 0.2 * p.x};
+  };
+  const std::vector<Vec3> displacement = displacement_on(mesh, sheared);
+  const MovedMesh moved = move_mesh(mesh, displacement);
+  EXPECT_EQ(first_defect(moved.mesh), std::nullopt);
+  EXPECT_EQ(moved.mesh.periodic_nodes.size(), mesh.periodic_nodes.size());
+  for (std::size_t k = 0; k < 3; ++k)
+    EXPECT_LT(distance(moved.mesh.periods[k], sheared(mesh.periods[k]) - sheared({})), 1e-12);
+  for (const auto& [period, copy, original] : moved.mesh.periodic_nodes)
+    EXPECT_EQ(moved.mesh.points[copy], moved.mesh.points[original] + moved.mesh.periods[period]);
+  std::vector<Vec3> other = displacement;
+  other[mesh.periodic_nodes[0][1]].x += 0.01;
+  EXPECT_THROW(move_mesh(mesh, other), InputError);
+}
+
+TEST(MoveMesh, WedgesAndPyramidsGoAlong) {
+  const TetMesh mesh = testing::mixed_mesh(4);
+  ASSERT_FALSE(mesh.wide_cells.empty());
+  const auto stretched = [](Vec3 p) { return Vec3{p.x + 0.2 * p.z * p.z, p.y, 2 * p.z}; };
+  const MovedMesh moved = move_mesh(mesh, displacement_on(mesh, stretched));
+  EXPECT_EQ(first_defect(moved.mesh), std::nullopt);
+  EXPECT_EQ(first_wide_defect(moved.mesh), std::nullopt);
+  ASSERT_EQ(moved.mesh.wide_cells.size(), mesh.wide_cells.size());
+  for (std::size_t c = 0; c < mesh.wide_cells.size(); ++c)
+    for (std::size_t k = 0; k < mesh.wide_cells[c].tet_count + 3; ++k)
+      EXPECT_LT(distance(moved.mesh.points[moved.mesh.wide_cells[c].nodes[k]],
+                         stretched(mesh.points[mesh.wide_cells[c].nodes[k]])),
+                1e-12);
+  // What is flat in the end cannot follow.
+  EXPECT_THROW(move_mesh(mesh, displacement_on(mesh, [](Vec3 p) { return Vec3{p.x, p.y, 0}; })), MeshingError);
 }
 
 }  // namespace
