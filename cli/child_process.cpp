@@ -18,10 +18,12 @@
 #include <mach-o/dyld.h>
 #endif
 #ifdef __linux__
-#include <linux/close_range.h>
 #include <linux/landlock.h>
 #include <sys/prctl.h>
 #include <sys/syscall.h>
+#if __has_include(<linux/close_range.h>)
+#include <linux/close_range.h>
+#endif
 #endif
 
 namespace octafront::cli {

@@ -110,6 +110,20 @@ std::string content_of(const std::filesystem::path& file) {
   return {std::istreambuf_iterator<char>(in), {}};
 }
 
+/// The page, which scripts/ui.sh makes, where it lies beside this program. Throws OptionError if it does not.
+std::filesystem::path workbench_page() {
+  if (const char* named = std::getenv("OCTAFRONT_UI_PAGE")) return named;
+  std::error_code ignored;
+  const std::filesystem::path folder = this_program().parent_path(), name = "octafront-ui.html";
+  for (const std::filesystem::path& place :
+       {folder / name, folder / "../share/octafront" / name, folder / "../../ui" / name})
+    if (std::filesystem::is_regular_file(place, ignored)) return place;
+  throw OptionError(
+      "the page of the workbench, octafront-ui.html, is not beside this program: scripts/ui.sh makes it (Node and "
+      "npm); "
+      "the variable OCTAFRONT_UI_PAGE names it elsewhere");
+}
+
 /// Outputs are plain names, in the folder of the run. Throws HttpError.
 void check_outputs(const Json& arguments) {
   if (!arguments.is_object() || !arguments.contains("output")) return;
@@ -426,19 +440,6 @@ class Workbench {
 };
 
 }  // namespace
-
-std::filesystem::path workbench_page() {
-  if (const char* named = std::getenv("OCTAFRONT_UI_PAGE")) return named;
-  std::error_code ignored;
-  const std::filesystem::path folder = this_program().parent_path(), name = "octafront-ui.html";
-  for (const std::filesystem::path& place :
-       {folder / name, folder / "../share/octafront" / name, folder / "../../ui" / name})
-    if (std::filesystem::is_regular_file(place, ignored)) return place;
-  throw OptionError(
-      "the page of the workbench, octafront-ui.html, is not beside this program: scripts/ui.sh makes it (Node and "
-      "npm); "
-      "the variable OCTAFRONT_UI_PAGE names it elsewhere");
-}
 
 void serve_workbench(const CLI::App& app, const WorkbenchSetting& setting) {
   Workbench(app, setting).run();

@@ -19,7 +19,4 @@ struct WorkbenchSetting {
 /// on Ctrl-C. Throws OptionError where it cannot be: on Windows, without cpp-httplib, without the page.
 void serve_workbench(const CLI::App& app, const WorkbenchSetting& setting);
 
-/// The page, which scripts/ui.sh makes, where it lies beside this program. Throws OptionError if it does not.
-std::filesystem::path workbench_page();
-
 }  // namespace octafront::cli

@@ -508,7 +508,7 @@ def pictures(folder):
                 page.settle()
                 image = Image.open(BytesIO(driver.get_screenshot_as_png())).convert("RGB")
                 image = image.resize((image.width * 3 // 4, image.height * 3 // 4), Image.LANCZOS)
-                image.quantize(64, dither=Image.Dither.NONE).save(folder / f"workbench-{step}-{width}.png", optimize=True)
+                image.quantize(160, dither=Image.Dither.NONE).save(folder / f"workbench-{step}-{width}.png", optimize=True)
 
             def see(id):
                 page.js("document.getElementById(arguments[0]).scrollIntoView({block: 'start'})", id)

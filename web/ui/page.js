@@ -443,6 +443,7 @@ function showWhat(what) {
   now.seen = what;
   document.querySelector(`[name=shown][value=${what}]`).checked = true;
   byId("of-mesh").hidden = what !== "mesh";
+  hover(null);
   listQuantities();
   if (what === "mesh") refill();
   else stage.hidePreview();
@@ -525,7 +526,7 @@ function goToWorst(by) {
 }
 function choose(element) {
   look.selected = element;
-  stage.mark(element, "#ff7800");
+  stage.mark(element, "#e0007c"); // no scale has it
   const box = byId("element");
   box.hidden = element < 0;
   if (element < 0) return;
