@@ -326,6 +326,16 @@ class Workbench(unittest.TestCase):
         page.wait(lambda: file.exists() and file.stat().st_size == page.js("return octafront.now.saved?.bytes"))
         self.assertIn("rim", subprocess.run([OCTAFRONT, "info", file], check=True, capture_output=True, text=True).stdout)
 
+    def test_two_faces_become_a_pair(self):
+        page = self.open()
+        page.choose("by", "size")
+        page.put("size", "6")
+        for name in ("face 3", "face 4"):
+            page.js("document.querySelector(`[data-key='face:${arguments[0]}'] input`).click()", name)
+        page.click("do-pair")
+        self.assertIn("--periodic 'face 3:face 4=0,40,0'", page.text("repeat"))
+        self.mesh(page)
+
     def test_steps_can_be_undone(self):
         page = self.open()
         start = page.js("return octafront.job")

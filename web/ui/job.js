@@ -5,6 +5,7 @@ const NO_JOB = {
   names: [], // {name, places}
   sizes: [], // {places, size}
   walls: [], // places that get layers
+  pairs: [], // {places: a face and its copy, by: the way from one to the other}
   layers: { n: "3", first: "", growth: "" },
   more: {}, // further options, by the names of the command line
 };
@@ -63,6 +64,7 @@ function optionsOf(job, isCad) {
     else options["first-part"] = FIRST_PART;
     if (job.layers.growth) options.growth = positive(job.layers.growth, "the growth of layers");
   }
+  if (job.pairs.length) options.periodic = job.pairs.map(({ places: [a, b], by }) => `${a.name}:${b.name}=${by.join(",")}`).join(";");
   const groups = job.names.flatMap(groupsOf);
   if (groups.length) options.group = groups;
   return { ...options, ...job.more };

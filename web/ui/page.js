@@ -180,6 +180,7 @@ function showPicked() {
   const names = [...now.picked.values()].map((place) => place.name);
   byId("picked").textContent = names.length === 0 ? "Click on the part, or in the list." : `picked: ${brief(names.map(shown).join(", "), 160)}`;
   for (const id of ["do-name", "do-size", "do-walls", "do-clear"]) byId(id).disabled = names.length === 0;
+  byId("do-pair").disabled = names.length !== 2 || picks().some((place) => place.kind !== "face");
   paint();
 }
 function hover(place) {
@@ -258,6 +259,24 @@ function layersThere() {
   change({ walls: [...history.now.walls, ...picks().filter((place) => !known.has(keyOf(place)))] });
 }
 
+/** The way from one face to the other, by the middles of their boxes; as exact as pairs have to be. */
+function pairThem() {
+  const places = picks(), middles = places.map((place) => middleOfPatch(now.surface.patches.indexOf(place.name)));
+  const LEAST = 1e-7 * radiusOf(now.surface.points), by = [0, 1, 2].map((i) => middles[1][i] - middles[0][i]).map((x) => (Math.abs(x) < LEAST ? 0 : Number(x.toPrecision(8))));
+  change({ pairs: [...history.now.pairs, { places, by }] });
+}
+function middleOfPatch(number) {
+  const { points, triangles, patch } = now.surface, low = [Infinity, Infinity, Infinity], high = [-Infinity, -Infinity, -Infinity];
+  for (let i = 0; i < 3 * triangles.length; ++i) {
+    const side = Math.floor(i / 3), axis = i % 3;
+    if (patch[Math.floor(side / 3)] !== number) continue;
+    const x = points[3 * triangles[side] + axis];
+    low[axis] = Math.min(low[axis], x);
+    high[axis] = Math.max(high[axis], x);
+  }
+  return low.map((l, axis) => (l + high[axis]) / 2);
+}
+
 /** Shows what is set, in all places of the page. */
 function showJob() {
   const job = history.now, entry = (text, places, next) => make("li", {},
@@ -266,6 +285,7 @@ function showJob() {
   const listed = (places) => places.map((place) => place.name).join(", ");
   byId("job").replaceChildren(...job.names.map((given, i) => entry(`${given.name}: ${listed(given.places)}`, given.places, { names: without(job.names, i) })),
     ...job.sizes.map((given, i) => entry(`size ${given.size}: ${listed(given.places)}`, given.places, { sizes: without(job.sizes, i) })),
+    ...job.pairs.map((given, i) => entry(`pair: ${listed(given.places)}`, given.places, { pairs: without(job.pairs, i) })),
     ...(job.walls.length ? [entry(`layers: ${listed(job.walls)}`, job.walls, { walls: [] })] : []));
   document.querySelector(`[name=by][value=${job.by}]`).checked = true;
   for (const row of document.querySelectorAll("[data-by]")) row.hidden = row.dataset.by !== job.by;
@@ -654,7 +674,7 @@ function listenToFiles() {
 
 function listenToControls() {
   const on = (id, type, does) => byId(id).addEventListener(type, does), each = (selector, does) => document.querySelectorAll(selector).forEach((element) => element.addEventListener("change", does));
-  for (const [id, does] of Object.entries({ undo: () => step(-1), redo: () => step(1), "do-name": nameIt, "do-size": sizeIt, "do-walls": layersThere, "do-clear": () => (now.picked.clear(), showPicked()), preview: seeSizes, go: makeMesh, cancel: () => now.work?.stop.abort(),
+  for (const [id, does] of Object.entries({ undo: () => step(-1), redo: () => step(1), "do-name": nameIt, "do-size": sizeIt, "do-walls": layersThere, "do-pair": pairThem, "do-clear": () => (now.picked.clear(), showPicked()), preview: seeSizes, go: makeMesh, cancel: () => now.work?.stop.abort(),
     save, "save-page": () => download(stem() + ".html", new Blob([now.made.text])), flip: flipCut, worse: () => goToWorst(-1), next: () => goToWorst(1), copy: copyRepeat })) on(id, "click", does);
   on("search", "input", listPlaces);
   on("find-option", "input", findOption);
