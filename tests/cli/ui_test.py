@@ -326,6 +326,25 @@ class Workbench(unittest.TestCase):
         page.wait(lambda: file.exists() and file.stat().st_size == page.js("return octafront.now.saved?.bytes"))
         self.assertIn("rim", subprocess.run([OCTAFRONT, "info", file], check=True, capture_output=True, text=True).stdout)
 
+    def test_a_browser_that_cannot_draw_picks_by_the_list(self):
+        script = self.driver.execute_cdp_cmd("Page.addScriptToEvaluateOnNewDocument", {"source": "HTMLCanvasElement.prototype.getContext = () => null"})
+        try:
+            page = Page(self.driver, self.program.address)
+            if "octafront-cad" in page.text("trouble"):
+                self.skipTest("no octafront-cad was built")
+            self.assertIn("no WebGL 2", page.text("trouble"))
+            page.js("document.querySelector(`[data-key='face:wall'] input`).click()")
+            page.put("name", "held")
+            page.click("do-name")
+            page.choose("by", "size")
+            page.put("size", "6")
+            page.click("go")
+            page.wait(lambda: "elements" in page.text("made"))
+            self.assertIn("held", page.text("repeat"))
+        finally:
+            self.driver.execute_cdp_cmd("Page.removeScriptToEvaluateOnNewDocument", script)
+            self.driver.get_log("browser")  # where three.js complains
+
     def test_two_faces_become_a_pair(self):
         page = self.open()
         page.choose("by", "size")

@@ -424,7 +424,8 @@ async function lookAtFile() {
 async function takeMesh(left, given) {
   given.progress?.("unpacking the mesh", null);
   const made = { run: left.run, report: left.reports[0], file: left.files.find((file) => file.name === "mesh.msh"), text: null, mesh: null };
-  if (!left.files.some((file) => file.name === "report.html")) return made;
+  const written = left.files.find((file) => file.name === "report.html"), MOST_BYTES = 4e8;
+  if (!written || written.bytes > MOST_BYTES) return made;
   made.text = await (await fetch(`made/${left.run}/report.html`, { signal: given.signal })).text();
   const page = new DOMParser().parseFromString(made.text, "text/html");
   takeFacts(JSON.parse(page.getElementById("facts").textContent));
@@ -440,6 +441,7 @@ function showMesh(made) {
   byId("made").replaceChildren(make("b", {}, `${grouped(report.tets)} elements`), report.wall_seconds ? ` in ${seconds(report.wall_seconds)} s` : "", quality.beta_mean ? `; mean β ${quality.beta_mean.toFixed(3)}, least ${quality.beta_min.toFixed(3)}` : "",
     made.mesh ? "" : ". That is more than a page can show; it can be saved.");
   byId("step-save").hidden = false;
+  byId("save-page").hidden = !made.text;
   byId("notes").replaceChildren();
   if (!made.mesh || !stage) return;
   stage.showMesh(made.mesh);
@@ -505,6 +507,7 @@ function readFilter() {
 
 const AXES = { x: [1, 0, 0], y: [0, 1, 0], z: [0, 0, 1] };
 function setCut(parts) {
+  if (!stage) return;
   const { clip } = look, [low, high] = stage.reachOf(clip.normal), share = clip.on ? (clip.offset - low) / (high - low || 1) : 0.5;
   Object.assign(clip, parts);
   if (parts.axis) {
@@ -696,7 +699,7 @@ function listenToControls() {
   on("clip", "change", (event) => setCut({ on: event.target.checked }));
   on("smooth", "change", (event) => setCut({ smooth: event.target.checked }));
   on("clip-at", "input", (event) => setCut({ share: event.target.value / 1000 }));
-  on("edges", "change", (event) => ((stage.uniforms.edges.value = event.target.checked ? 1 : 0), stage.redraw()));
+  on("edges", "change", (event) => stage && ((stage.uniforms.edges.value = event.target.checked ? 1 : 0), stage.redraw()));
   for (const button of document.querySelectorAll("[data-axis]")) button.addEventListener("click", () => setCut({ axis: button.dataset.axis }));
   for (const id of ["filter", "filter-low", "filter-high"]) on(id, "input", readFilter);
   on("format", "change", showRepeat);
