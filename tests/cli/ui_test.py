@@ -472,7 +472,7 @@ class Workbench(unittest.TestCase):
         page.driver.find_element("id", "files").send_keys(str(made))
         page.wait(lambda: page.shows("step-save") and "given" in page.text("part"))
         page.idle()
-        self.assertFalse(page.shows("setup"))
+        self.assertFalse(page.shows("step-pick"))
         page.click("next")
         self.assertIn("1 of", page.text("worst"))
 
