@@ -39,6 +39,7 @@
 #                            and Gmsh (-> docs/measured/layers-flows.md); layers_solved: a laminar pipe with and without -> docs/measured/layers-solved.md
 #   bench/run.sh flows       a car, a wing and a bracket in a wind tunnel, tetrahedra and polyhedra, solved by simpleFoam -> docs/measured/flows.md
 #   bench/run.sh cavity      a lid-driven cavity on tetrahedra, their dual and polyDualMesh's, beside published values -> docs/measured/cavity.md
+#   bench/run.sh freecad     jobs from FreeCAD to CalculiX, meshed by Gmsh as FreeCAD does it and by our workbench -> docs/use/freecad.md
 #   bench/run.sh high_order  orders 2 to 4: how true are walls, how good elements, read by Gmsh, beside its own -> docs/measured/high-order.md
 #   bench/run.sh inside      sheets, lines and points in a block, beside Gmsh and TetGen     -> docs/measured/inside.md
 #   bench/run.sh periodic    periodic cells with and without periods, beside Gmsh, solved    -> docs/measured/periodic.md
@@ -52,7 +53,7 @@ cd "$(dirname "$0")/.."
 source scripts/lib/apt.sh
 
 case ${1:-} in
-  status | derived | pipeline | surface | elements | gradation | volume | graded | peers | experiments | complexes | improve | adapt | adapt_loops | carry | move | motion | formats | parts | second_order | dry_run | repair | known_answers | damage | images | images_needed | four_shells | thin | budget | cad | layers | layers_shapes | layers_flows | layers_peers | layers_solved | inside | periodic | ranks | threads | answers | polyhedral | flows | cavity | high_order) ;;
+  status | derived | pipeline | surface | elements | gradation | volume | graded | peers | experiments | complexes | improve | adapt | adapt_loops | carry | move | motion | formats | parts | second_order | dry_run | repair | known_answers | damage | images | images_needed | four_shells | thin | budget | cad | layers | layers_shapes | layers_flows | layers_peers | layers_solved | inside | periodic | ranks | threads | answers | polyhedral | flows | cavity | high_order | freecad) ;;
   *) sed -n '2,/^set/s/^# \{0,1\}//p' "$0"; exit 2 ;;
 esac
 need_packages "${build_packages[@]}" python3
@@ -73,6 +74,7 @@ need_packages "${build_packages[@]}" python3
 [[ $1 != layers_* ]] || need_packages python3-numpy python3-meshio openfoam
 { [ "$1" != flows ] && [ "$1" != cavity ]; } || need_packages python3-numpy openfoam
 [ "$1" != high_order ] || need_packages python3-numpy python3-gmsh "${cad_packages[@]}"
+[ "$1" != freecad ] || need_packages freecad gmsh calculix-ccx "${cad_packages[@]}"
 { [ "$1" != adapt ] && [ "$1" != motion ]; } || need_packages python3-numpy python3-dolfinx
 [ "$1" != periodic ] || need_packages calculix-ccx
 { [ "$1" != inside ] && [ "$1" != periodic ]; } || need_packages python3-numpy python3-meshio python3-gmsh tetgen
@@ -81,7 +83,7 @@ need_packages "${build_packages[@]}" python3
 [ "$1" != images_needed ] || need_packages python3-numpy python3-nibabel
 [ "$1" != four_shells ] || need_packages python3-numpy python3-scipy python3-nibabel python3-meshio
 [[ $1 != images* ]] || [ -d volumes ] || bench/models/get-volumes.sh
-[ "$1" = move ] || [ "$1" = motion ] || [ "$1" = formats ] || [ "$1" = ranks ] || [ "$1" = adapt ] || [ "$1" = complexes ] || [ "$1" = four_shells ] || [[ $1 = images* ]] || [ "$1" = thin ] || [ "$1" = cad ] || [ "$1" = answers ] || [ "$1" = flows ] || [ "$1" = cavity ] || [ "$1" = high_order ] || [ -d models/clean ] || bench/models/get-models.sh --ct
+[ "$1" = move ] || [ "$1" = motion ] || [ "$1" = formats ] || [ "$1" = ranks ] || [ "$1" = adapt ] || [ "$1" = complexes ] || [ "$1" = four_shells ] || [[ $1 = images* ]] || [ "$1" = thin ] || [ "$1" = cad ] || [ "$1" = answers ] || [ "$1" = flows ] || [ "$1" = cavity ] || [ "$1" = high_order ] || [ "$1" = freecad ] || [ -d models/clean ] || bench/models/get-models.sh --ct
 tests=OFF
 [ "$1" != complexes ] && [ "$1" != known_answers ] || tests=ON  # what makes complexes is theirs, and a judge
 mpi=()
@@ -89,7 +91,7 @@ mpi=()
 cmake --preset release -DOCTAFRONT_BUILD_TESTS=$tests "${mpi[@]}" >/dev/null
 cmake --build --preset release --target octafront_cli octafront_evaluate octafront_judge_surface
 [ "$1" != cad ] || cmake --build --preset release --target octafront_cad_program octafront_judge_cad
-[ "$1" != answers ] || cmake --build --preset release --target octafront_cad_program
+{ [ "$1" != answers ] && [ "$1" != freecad ]; } || cmake --build --preset release --target octafront_cad_program
 [ "$1" != derived ] || [ -d models/derived ] || bench/models/derive-models.sh build/release/cli/octafront
 [ "$1" != adapt ] || cmake --build --preset release --target octafront_adapt_cases octafront_python
 [ "$1" != adapt_loops ] || cmake --build --preset release --target octafront_adapt_loops

@@ -114,6 +114,24 @@ std::pair<std::uint32_t, std::uint32_t> bodies_and_cavities(const RepairedSurfac
   return {clean.bodies > 1 ? clean.bodies : spaces.filled, spaces.cavities};
 }
 
+/// What small elements must fit into.
+void tell_smallest(Session& session, const SurfaceMesh& clean) {
+  const SmallestFeatures small = smallest_features(clean, kDefaultFeatureAngle, session.context());
+  const auto at = [](Vec3 p) { return fmt::format("({:.6g}, {:.6g}, {:.6g})", p.x, p.y, p.z); };
+  if (small.thickness < SmallestFeatures::kNone) {
+    const auto part = [](double width) { return width < SmallestFeatures::kNone ? Json(width) : Json(nullptr); };
+    session.found({{"thickness",
+                    {{"least", small.thickness},
+                     {"at", place(small.thinnest_at)},
+                     {"tenth", part(small.thin_tenth)},
+                     {"half", part(small.thin_half)}}}});
+    session.say(fmt::format("  thinnest {:.4g}, at {}\n", small.thickness, at(small.thinnest_at)));
+  }
+  if (!(small.shortest_edge < SmallestFeatures::kNone)) return;
+  session.found({{"shortest_edge", {{"length", small.shortest_edge}, {"at", place(small.shortest_at)}}}});
+  session.say(fmt::format("  shortest edge {:.4g}, at {}\n", small.shortest_edge, at(small.shortest_at)));
+}
+
 void check_surface(Session& session) {
   const std::string name = session.arguments().input.string();
   IntakeOptions as_it_is = session.arguments().intake;
@@ -135,6 +153,7 @@ void check_surface(Session& session) {
   session.found({{"bodies", bodies}, {"cavities", cavities}, {"volume", volume}});
   session.say(fmt::format("{}: clean: {} {}, {} {}, volume {:.6g}\n", name, bodies, bodies == 1 ? "body" : "bodies",
                           cavities, cavities == 1 ? "cavity" : "cavities", volume));
+  tell_smallest(session, repaired.surface);
 }
 
 /// What there is to a surface that is refused.

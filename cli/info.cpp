@@ -135,6 +135,14 @@ std::vector<std::string> contacts_in_words(const CadInfo& info) {
   return lines;
 }
 
+/// What small elements must fit into; the files say more.
+std::string smallest_in_words(const CadInfo& info) {
+  const auto first_of = [](const char* what, const std::vector<CadInfo::Small>& all) {
+    return all.empty() ? "" : fmt::format("  {} {:.4g}, \"{}\"\n", what, all.front().size, all.front().name);
+  };
+  return first_of("shortest edge", info.shortest_edges) + first_of("narrowest face", info.narrowest_faces);
+}
+
 void tell_cad_info(Session& session) {
   const Arguments& a = session.arguments();
   const CadInfo info = read_cad_info(a.input.string(), a.intake, session.context());
@@ -148,6 +156,7 @@ void tell_cad_info(Session& session) {
   say_first(session, parts_in_words(info));
   say_first(session, patches_in_words(info));
   say_first(session, contacts_in_words(info));
+  session.say(smallest_in_words(info));
   for (const CadInfo::Group& group : info.groups)
     session.say(fmt::format("  {}: {}\n", group.name,
                             group.faces > 0 ? counted(group.faces, "face") : counted(group.solids, "solid")));

@@ -80,6 +80,22 @@ Json files_in_schema(const char* about, bool several) {
   return {{"anyOf", {one, {{"type", "array"}, {"items", one}, {"minItems", 1}}}}, {"description", about}};
 }
 
+Json input_in_schema(Tool::Input input) {
+  switch (input) {
+    case Tool::Input::kOne:
+      return files_in_schema("file", false);
+    case Tool::Input::kSeveral:
+      return files_in_schema("file; or several, a body each; or a formula", true);
+    case Tool::Input::kTwo:
+      break;
+  }
+  return {{"type", "array"},
+          {"items", {{"type", "string"}, {"minLength", 1}}},
+          {"minItems", 2},
+          {"maxItems", 2},
+          {"description", "two files: the mesh with the fields, and the mesh that they go to"}};
+}
+
 Json limits_in_schema() {
   const auto above_0 = [](const char* about) {
     return Json{{"type", "number"}, {"exclusiveMinimum", 0}, {"description", about}};
@@ -118,8 +134,7 @@ Json input_schema(const Tool& tool, const CLI::App& app) {
     return {{"type", "object"}, {"properties", properties}, {"additionalProperties", false}};
   }
   const CLI::App& command = *command_called(app, tool.command);
-  properties["input"] =
-      files_in_schema(tool.takes_several ? "file; or several, a body each; or a formula" : "file", tool.takes_several);
+  properties["input"] = input_in_schema(tool.input);
   required.push_back("input");
   if (tool.output == Tool::Output::kOne || tool.output == Tool::Output::kSeveral) {
     properties["output"] = files_in_schema(
@@ -184,50 +199,62 @@ Json output_schema(const Tool& tool, const CLI::App& app) {
 
 const std::vector<Tool>& tools() {
   using Output = Tool::Output;
+  using Input = Tool::Input;
   static const std::vector<Tool> all{
       {"inspect", "What is in a file",
        "What a file holds before anything is made: a CAD file's solids, named faces, contacts and unit; a surface's "
-       "patches, area and defects; a mesh's order, quality and groups; an image's labels. Names that it lists are "
+       "patches, area, defects, thinnest wall and shortest edge; a mesh's order, quality and groups; an image's "
+       "labels. Names that it lists are "
        "places for options of the other tools.",
-       "info", Output::kNone, false,
+       "info", Output::kNone, Input::kOne,
        "kind format unit lengths notes input_notes triangles vertices box area places bodies cavities clean defects "
-       "solids named_faces contacts groups size spacing frame voxels labels least largest points tets order volume "
+       "solids named_faces contacts thickness shortest_edge shortest_edges narrowest_faces groups size spacing frame "
+       "voxels labels least largest points tets order volume "
        "quality worst_element"},
       {"plan", "What meshing would take",
        "A dry run of mesh: elements, memory and seconds, and which source of size asked for the elements. Nothing is "
        "written. Call it before mesh where sizes are not sure.",
-       "mesh", Output::kNone, true, "dry_run expected_tets input_volume bodies notes defects leak"},
+       "mesh", Output::kNone, Input::kSeveral, "dry_run expected_tets input_volume bodies notes defects leak"},
       {"mesh", "Make a tetrahedral mesh",
        "Meshes CAD (STEP, IGES, BREP), surfaces (STL, OBJ, PLY, ...), images of voxels or a formula into valid "
        "tetrahedra and writes it. Names of solids and faces become groups. Without a size an automatic one is chosen. "
        "For solvers of structures give order 2.",
-       "mesh", Output::kSeveral, true,
+       "mesh", Output::kSeveral, Input::kSeveral,
        "tets points boundary_faces order volume input_volume true_volume regions layers opened_contacts quality "
        "worst_element second_order output outputs notes defects leak wall_seconds hash"},
       {"check", "Whether a surface or a mesh is sound",
        "Whether a surface can be meshed as it is, or a mesh is valid; with options {solver} which elements a solver "
        "would warn of or refuse.",
-       "check", Output::kNone, true,
+       "check", Output::kNone, Input::kSeveral,
        "kind format clean valid defects repairs bodies cavities volume tets quality worst_elements solver second_order "
        "groups"},
       {"improve", "Make the elements of a mesh better",
-       "Smoothing and reconnection of a mesh of any tool; its names and sets stay.", "improve", Output::kSeveral, false,
-       "tets points order quality worst_element output outputs notes wall_seconds hash"},
+       "Smoothing and reconnection of a mesh of any tool; its names and sets stay.", "improve", Output::kSeveral,
+       Input::kOne, "tets points order quality worst_element output outputs notes wall_seconds hash"},
       {"adapt", "Change a mesh to other sizes",
        "Refines and coarsens a mesh until it fits sizes: size, size-near, a field of sizes, a metric, or a field of "
        "the mesh (from, with elements).",
-       "adapt", Output::kSeveral, false,
+       "adapt", Output::kSeveral, Input::kOne,
        "tets points order quality fit deviation carried output outputs notes wall_seconds hash"},
+      {"carry", "Bring fields of one mesh to another",
+       "Values at nodes and in elements of a mesh, such as a solver's, on a mesh made anew: of elements integrals and "
+       "bounds stay. Fields are named by options {carry: [T, rho]}; without, all go.",
+       "carry", Output::kSeveral, Input::kTwo, "carry carried tets points output outputs notes wall_seconds hash"},
+      {"move", "Move a mesh by a field",
+       "A mesh moved by the field of displacements that options {displacement: NAME} name, in steps as long as its "
+       "elements allow, mended on the way; other fields go along.",
+       "move", Output::kSeveral, Input::kOne,
+       "history carry carried tets points order quality worst_element output outputs notes wall_seconds hash"},
       {"convert", "Write a mesh in another format", "With all names and sets that the other format holds.", "convert",
-       Output::kSeveral, false, "output outputs notes input_notes"},
+       Output::kSeveral, Input::kOne, "output outputs notes input_notes"},
       {"explain", "What an option means, or why a run failed",
        "With {option} what it means and takes; with {file} what is wrong with a surface or poor in a mesh, where, and "
        "what to do; without arguments why the last call that failed did.",
-       "", Output::kNone, false, "kind clean valid defects quality worst_elements"},
+       "", Output::kNone, Input::kOne, "kind clean valid defects quality worst_elements"},
       {"picture", "Draw an input or a mesh",
        "A PNG of a file: cut open with options {cut: y}, faces by name {names: true}, where a face is {highlight: "
        "NAME}, the worst element {worst: true}, coloured by {color: quality, region, size or patch}.",
-       "picture", Output::kPicture, true, "picture"},
+       "picture", Output::kPicture, Input::kSeveral, "picture"},
   };
   return all;
 }
@@ -369,7 +396,9 @@ Plan plan_of(const Tool& tool, const Json& arguments, const CLI::App& app, const
                                : std::set<std::string>{"input", "output", "options", "limits"});
   const CLI::App& command = *command_called(app, tool.command);
   std::vector<std::string> line{tool.command};
-  const std::vector<std::string> inputs = files_of(arguments, "input", tool.takes_several, folders);
+  const std::vector<std::string> inputs = files_of(arguments, "input", tool.input != Tool::Input::kOne, folders);
+  if (tool.input == Tool::Input::kTwo && inputs.size() != 2)
+    throw BadCall{"bad_arguments", "input is two files: the mesh with the fields, and the mesh that they go to"};
   line.insert(line.end(), inputs.begin(), inputs.end());
   using Output = Tool::Output;
   if (tool.output == Output::kOne || tool.output == Output::kSeveral)

@@ -20,8 +20,8 @@ struct Tool {
   const char *name, *title, *about;
   const char* command;  ///< of the command line; empty: answered without one
   enum class Output { kNone, kOne, kSeveral, kPicture } output = Output::kNone;
-  bool takes_several = false;  ///< inputs
-  const char* keys;            ///< of the report that are answered, with blanks between
+  enum class Input { kOne, kSeveral, kTwo } input = Input::kOne;
+  const char* keys;  ///< of the report that are answered, with blanks between
 };
 const std::vector<Tool>& tools();
 /// Null: there is none.

@@ -44,19 +44,11 @@ void set_pixels(PictureOptions& picture, const std::string& typed) {
 }  // namespace
 
 std::vector<LineOption> picture_options() {
-  using Color = PictureOptions::Color;
-  using Edges = PictureOptions::Edges;
   return {
       {kPicture, kPictureGroup, "--color", "",
        "What colours tell: quality, beta from 0 (dark) to 1 (light) whatever the mesh; region; size, the mean edge "
        "length; patch; none [region where there are several, else quality; of surfaces region or patch]",
-       named_choice<Color>({{"quality", Color::kQuality},
-                            {"region", Color::kRegion},
-                            {"size", Color::kSize},
-                            {"patch", Color::kPatch},
-                            {"none", Color::kPlain}},
-                           &PictureOptions::color),
-       "What colours tell"},
+       named_choice(picture_colors(), &PictureOptions::color), "What colours tell"},
       {kPicture, kPictureGroup, "--cut", "PLANE",
        "Cut open, elements stay whole: x, -y, z=12.5, x=30%, a normal NX,NY,NZ, or NX,NY,NZ:X,Y,Z through a point; "
        "what lies beyond goes",
@@ -83,8 +75,7 @@ std::vector<LineOption> picture_options() {
        "Which edges are drawn: elements; features, where patches or regions meet or faces at more than 40 degrees; "
        "none "
        "[elements; of CAD and images features]",
-       named_choice<Edges>({{"elements", Edges::kElements}, {"features", Edges::kFeatures}, {"none", Edges::kOff}},
-                           &PictureOptions::edges)},
+       named_choice(picture_edges(), &PictureOptions::edges)},
       {kPicture, kPictureGroup, "--size", "WxH", "Pixels across and down, 64 to 8192 [1200x900]",
        each([](Arguments& a, const std::string& typed) { set_pixels(a.picture, typed); }), "Pixels across and down"},
       {kPicture, kPictureGroup, "--bare", "", "Without axes, scale bar, legend and caption",

@@ -61,6 +61,12 @@ constexpr ReportField kReport[] = {
     {"patches[]", "string", "names in the file"},
     {"bodies", "integer", "that the surface bounds"},
     {"cavities", "integer", "in them"},
+    {"thickness.least", "number", "from a place of a wall to the wall that faces it"},
+    {"thickness.at", "place", "the place"},
+    {"thickness.tenth", "number?", "a tenth of the area is over walls no thicker"},
+    {"thickness.half", "number?", "half of it"},
+    {"shortest_edge.length", "number", "of a line between corners, along which faces meet"},
+    {"shortest_edge.at", "place", "its middle"},
     // CAD.
     {"to_millimetres", "number", "by which numbers of the file are multiplied"},
     {"lengths", "string", "the unit of lengths here"},
@@ -86,6 +92,10 @@ constexpr ReportField kReport[] = {
     {"contacts[].overlap", "number", "volume that both fill"},
     {"contacts[].depth", "number", "how thick that is"},
     {"edges[]", "string", "names of the edges"},
+    {"shortest_edges[].name", "string", "by the faces that meet in it"},
+    {"shortest_edges[].size", "number", "its length; the shortest first, eight at most"},
+    {"narrowest_faces[].name", "string", ""},
+    {"narrowest_faces[].size", "number", "twice its area over the length of its edges"},
     {"named_faces", "integer", "that have a name in the file"},
     // Images.
     {"size[]", "integer", "voxels along i, j and k"},

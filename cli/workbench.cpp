@@ -43,9 +43,10 @@ constexpr std::chrono::seconds kPatience{6};
 const std::vector<Tool>& workbench_tools() {
   using Output = Tool::Output;
   static const std::vector<Tool> all = [] {
-    std::vector<Tool> known{{"info", "", "", "info", Output::kNone, false, ""},
-                            {"surface", "", "", "surface", Output::kOne, true, ""},
-                            {"report", "", "", "report", Output::kOne, false, ""}};
+    using Input = Tool::Input;
+    std::vector<Tool> known{{"info", "", "", "info", Output::kNone, Input::kOne, ""},
+                            {"surface", "", "", "surface", Output::kOne, Input::kSeveral, ""},
+                            {"report", "", "", "report", Output::kOne, Input::kOne, ""}};
     for (const Tool& tool : tools())
       if (!std::string_view(tool.command).empty()) known.push_back(tool);
     return known;

@@ -343,7 +343,7 @@ def page(runs, cases):
         "# Contacts of bodies that were faceted apart", "", f"{first}: cases {cases}, {len(runs)} runs.", "",
         "Pairs of bodies whose walls are meant to be one and are not: pins, bolts and cones of n sides in holes of m, balls in cavities, "
         "threads, boxes that overlap or gap by 1e-7 to 1e-2 of their size, or are tilted, a pin in a ring of three parts; at scales of "
-        "1e-3, 1 and 1e3, in both orders, at three sizes. Each is meshed beside the same bodies with matched facets. A run is good if "
+        "1e-3, 1 and 1e3, in both orders, at three sizes. A run is good if "
         f"all bodies are regions, no dihedral angle is below {LEAST_ANGLE} degrees unless matched facets have one, elements are at most "
         f"{MOST_ELEMENTS} times those of matched facets (and {FEW}), CPU seconds {MOST_TIME} times theirs (and {FIXED_SECONDS}), and "
         "volumes, of the file as meshio reads it, differ by no more than twice the misfit of the facets times the area.", "", *table(runs), ""]

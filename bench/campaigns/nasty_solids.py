@@ -142,7 +142,7 @@ def table(runs):
 
 def shown(rows):
     """Rows of cells: the families that take longest, and the sum."""
-    return ["The ten families that take longest, and all:", "", *tables.worst(HEAD, rows[:-1], "CPU s, worst", HEAD, most=True), tables.row(rows[-1]), "",
+    return ["The five families that take longest, and all:", "", *tables.worst(HEAD, rows[:-1], "CPU s, worst", HEAD, most=True, count=5), tables.row(rows[-1]), "",
             f"Each family: {tables.put('nasty-solids', HEAD, rows)}."]
 
 
@@ -156,8 +156,7 @@ def page(runs, arguments, plain):
         f" `--size` of an eighth of its diagonal (coarse), and with one for about {FINE:,} elements (fine), on one thread. A run is good if"
         f" it ends with a valid mesh, in {FIXED_SECONDS} CPU s and {TIMES_PLAIN} times what a ball takes for as many elements"
         f" ({1e6 * plain:.1f} us each), with at most {ABOVE_BUDGET} times the budget that automatic sizes promise (or, where a size is given, {MANY} times what it asks for,"
-        f" {FORCED} for each triangle of the input and {FEW:,}), and within {100 * LOST:.0f} % of the exact volume. Where a given size cannot"
-        " keep the volume a note has to say so.", "",
+        f" {FORCED} for each triangle of the input and {FEW:,}), and within {100 * LOST:.0f} % of the exact volume. Where a given size cannot keep the volume a note says so.", "",
         *shown(table(runs)), "",
         f"What was not good ({len(faulty)} of {len(runs)}):", "",
         *(f"- {r.number} {r.family}, {r.size}: {'; '.join(r.faults)}" for r in faulty[:20]),

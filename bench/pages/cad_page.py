@@ -120,31 +120,6 @@ def summaries(kept, whose=""):
     return [summary(f"{whose}{who}, {part}", runs_of(kept, who, part), kept.files) for who, part in asked if runs_of(kept, who, part)]
 
 
-def misses(kept, part=100):
-    """Which files miss what is asked for of second order at a hundredth: no mesh, volume, area, box, poor elements, nodes."""
-    runs = runs_of(kept, "ours", part)
-    if not runs:
-        return {}
-    done = [m for m in runs if "area" in m]
-    found = {
-        "no mesh": [m for m in runs if "error" in m],
-        "volume beyond .1 %": [m for m in done if abs(m["off"]) > .1],
-        "area beyond .2 %": [m for m in done if abs(m["area"]) > .2],
-        "box beyond .1 % of the diagonal": [m for m in done if m["box"] > .1],
-        "a face without a group that nothing said": [m for m in done if not all_faces(m, kept.files[m["file"]])],
-        "poor elements that the shape does not force": [m for m in done if m["poor"]["unforced"]],
-        "more than a thousandth of the boundary's nodes off the geometry": [m for m in done if m["astray"] > 1e-3 * m["nodes"]],
-    }
-    return {what: sorted(m["file"] for m in runs) for what, runs in found.items()}
-
-
-def misses_in_words(debian, others):
-    """A line for each kind, the files of both sets."""
-    names = {what: debian.get(what, []) + others.get(what, []) for what in [*debian, *others]}
-    return [*(f"- {what}: {', '.join(files)}." for what, files in names.items() if files),
-            f"- none: {'; '.join(what for what, files in names.items() if not files) or '-'}."]
-
-
 def name_counts(made, kind):
     """How many names of a kind each format of a run has."""
     found = [arrived[kind] for arrived in made.get("names", {}).values() if kind in arrived]
@@ -162,15 +137,6 @@ def names_rows(kept):
         for kind, (_, wanted) in runs["ours"].get("names", {}).get("msh", {}).items():
             rows.append([file, kind, wanted, *(name_counts(runs[who], kind) for who in MESHERS)])
     return rows
-
-
-def names_in_words(kept):
-    total = {}
-    for made in runs_of(kept, "ours", 40):
-        for kind, (found, wanted) in made.get("names", {}).get("msh", {}).items():
-            before = total.get(kind, (0, 0))
-            total[kind] = (before[0] + found, before[1] + wanted)
-    return ", ".join(f"{kind} {found} of {wanted}" for kind, (found, wanted) in sorted(total.items()))
 
 
 def rows_of(kept):
@@ -198,9 +164,6 @@ def write(debian, others, timeout):
         "peers": "; ".join(sorted(origins(debian, MESHERS[1:]))),
         "timeout": f"{timeout:.0f}",
         "summaries": "\n".join(table(SUMMARY, summaries(debian) + summaries(others, "others: "))),
-        "misses": "\n".join(misses_in_words(misses(debian), misses(others))),
-        "names_in_words": names_in_words(debian),
-        "others_names": names_in_words(others),
     }, {"": (rows_of(debian), refused(debian)), "others_": (rows_of(others), refused(others))}, names_rows(debian))
 
 

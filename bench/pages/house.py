@@ -97,20 +97,6 @@ class House:
                 self.longest_class()]
 
 
-def picture(house):
-    """The table of wings in ARCHITECTURE.md, to which tests/house holds the includes, without arrows that follow."""
-    below = {}
-    for wing, named in house.may.items():
-        below[wing] = set(named).union(*(below[other] for other in named))
-    yield "```mermaid"
-    yield "flowchart BT"
-    for wing, named in house.may.items():
-        rooms = ", ".join(sorted(room.split("/")[1] for room in house.rooms if room.startswith(wing + "/")))
-        yield f'  {wing}["<b>{wing}</b>{"<br>" if rooms else ""}{rooms}"]'
-        yield from (f"  {wing} --> {other}" for other in named if not any(other in below[o] for o in named))
-    yield "```"
-
-
 def main():
     houses = [House(commit) for commit in sys.argv[1:]] + [House(None)]
     now = houses[-1]
@@ -119,9 +105,8 @@ def main():
     print("| --- |" + " ---: |" * 10)
     for house in houses:
         print("|", " | ".join(map(str, house.row())), "|")
-    print("\nAn arrow: a file of one includes a header of the other. The last row is the tree on top of the commit that it names.\n")
-    print(*picture(now), sep="\n")
-    print("\nBy the table of wings; arrows that follow from others are left out.\n\n| wing | rooms | files | lines |\n| --- | ---: | ---: | ---: |")
+    print("\nAn arrow: a file of one includes a header of the other.\n")
+    print("| wing | rooms | files | lines |\n| --- | ---: | ---: | ---: |")
     for wing in sorted(now.wings, key=lambda w: -now.lines(now.wing, w)):
         rooms = sum(r.split("/")[0] == wing for r in now.rooms)
         print(f"| `{wing}` | {rooms} | {now.wings[wing]} | {now.lines(now.wing, wing):,} |")

@@ -96,8 +96,8 @@ def main():
                   "step; *sizes*: as long in all directions, with the same density. The error is that of the gradient in L².", "",
                   *tables.table(["mesh", "elements", "unknowns", "error"], [[kind, f"{r['elements']:,}", f"{r['unknowns']:,}", f"{r['error']:.4f}"]
                                                                             for kind in ("uniform", "sizes", "metric") for r in loops[kind]])]
-        lines += ["", f"Slopes of the lines that fit best: uniform {slope(loops['uniform']):.3f}, sizes {slope(loops['sizes']):.3f}, metric {slope(loops['metric']):.3f}. By theory they end at -²⁄₉, -⅓ and -⅓: the "
-                  "uniform meshes have not yet come to where the edge alone counts; elements that are long along the edge have a slope between that of a plane (-½) and that of a body, probably because they may still grow longer. Round elements of the density that the metric has gain nothing over uniform ones here; the directions do."]
+        lines += ["", f"Slopes of the lines that fit best: uniform {slope(loops['uniform']):.3f}, sizes {slope(loops['sizes']):.3f}, metric {slope(loops['metric']):.3f}. By theory they end at -²⁄₉, -⅓ and -⅓. "
+                  "Round elements of the density that the metric has gain nothing over uniform ones here; the directions do."]
     tables.write("adapt", lines)
 
 

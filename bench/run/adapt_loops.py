@@ -50,8 +50,7 @@ def shown(rows):
 def page(results, loops):
     lines = ["# Adaptation to sizes, and ten times in turn", "",
              f"{written_by('bench/run.sh adapt_loops')}, on one thread: a mesh of about 20,000 elements is adapted to a small uniform size, what comes of it to a large "
-             f"one, and so on, {loops} loops, each from the mesh that the one before made and nothing else. *k/s*: thousand elements for each CPU second of a whole call, checks "
-             "before and after included; those that were made, or those that came if they were more. *fit*, *longest*: edges from √½ to √2 times as long as is wanted, and the longest, in parts of what is wanted. "
+             f"one, and so on, {loops} loops, each from the mesh that the one before made and nothing else. *k/s*: thousand elements for each CPU second of a whole call. *fit*, *longest*: edges from √½ to √2 times as long as is wanted, and the longest, in parts of what is wanted. "
              "*poor*: elements with β < .3, forced or not. *volume* against that of the mesh that all began with. *on its surface*: with `--surface`, the surface "
              "that was meshed: volumes against that of the surface. *off*: the distance of walls and their ground, both ways, in parts of the bound (the larger of .4 % of the "
              "diagonal and what the walls that came had).", ""]

@@ -16,7 +16,7 @@ import tempfile
 
 from bench.ours import counter
 from bench.pages.origin import written_by
-from bench.pages.tables import put, spread, worst, write
+from bench.pages.tables import put, spread, write
 from bench.process import run_bounded, run_measured
 
 CAD = (".step", ".stp", ".brep", ".iges", ".igs")
@@ -89,8 +89,7 @@ def tables(name, rows, failed):
     refused = collections.defaultdict(list)
     for model, why in failed:
         refused[why].append(model)
-    lines = [*spread(HEAD, rows, HEAD[1:-1]), "", f"Each: {put(name, HEAD, rows)}.", "", "Least angles:", "",
-             *worst(HEAD, rows, "least angle", ["model", "triangles", "made", "least β", "least angle", "CPU s"])]
+    lines = [*spread(HEAD, rows, [c for c in HEAD[1:-1] if c not in ("triangles", "before", "rounds", "work") and any(r[HEAD.index(c)] for r in rows)]), "", f"Each: {put(name, HEAD, rows)}."]
     return lines + (["", "Not meshed:", "", *(f"- {why}: {', '.join(models)}" for why, models in sorted(refused.items()))] if failed else [])
 
 
@@ -99,10 +98,8 @@ def page(options, rows, failed, command):
     off = [r for r in rows if abs(r["said"] / r["tets"] - 1) > OVER - 1]
     lines = [
         f"# {options.title}", "",
-        f"{written_by(command)}, one model at a time on one thread; what the budget is: "
-        "`docs/how/sizes-and-surface.md`. *Said* is the prediction once the surface is made, which is what `--dry-run` "
-        "says; *least β* and *least angle* (dihedral, degrees) are of the worst element, forced by the input or not; "
-        "*work* is the triangles of all rounds of the surface front over those of the last.", "",
+        f"{written_by(command)}, on one thread; the budget: `docs/how/sizes-and-surface.md`. *Said* is the prediction once the surface is made, which is what `--dry-run` "
+        "says; *least β* and *least angle* (dihedral, degrees) are of the worst element, forced by the input or not.", "",
         f"{len(rows)} models meshed, {len(failed)} not. Above 1.3 times the budget: **{len(over)}**"
         + (" (" + ", ".join(r["model"] for r in over) + ")" if over else "")
         + f". Said and made more than 30 % apart: **{len(off)}**"
@@ -111,7 +108,8 @@ def page(options, rows, failed, command):
         f"Most CPU time: {max(r['cpu'] for r in rows):.1f} s. Most memory: {max(r['memory'] for r in rows) / 1e6:.0f} MB.",
         f"Least angle: {sum(r['angle'] < 5 for r in rows)} models below 5°, {sum(r['angle'] < 15 for r in rows)} below 15°, "
         f"{statistics.median(r['angle'] for r in rows):.1f}° in the median."]
-    lines += beside(rows, "before", "the program before") + beside(rows, "gmsh", "Gmsh with 12 elements a turn")
+    print(*beside(rows, "before", "the program before"), sep="\n")
+    lines += beside(rows, "gmsh", "Gmsh with 12 elements a turn")
     return [*lines, "", *tables(options.page, [cells(r) for r in rows], failed)]
 
 

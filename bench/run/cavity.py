@@ -155,7 +155,7 @@ ABOUT = (f"A square of side 1 and a slab of it {THICK:g} thick, its front and ba
          "`octafront mesh` makes tetrahedra of one size; `convert --polyhedral` their dual, and OpenFOAM's polyDualMesh (v1912) its own of the same. simpleFoam, laminar, second order "
          "throughout, until residuals fall below 1e-6, one core. *Off the table*: root mean square beside u at the 15 inner points of the line x = 1/2 of U. Ghia, K. N. Ghia, "
          f"C. T. Shin, J. Comput. Phys. 48 (1982), of a lid's speed 1; *off the fine solution*: of the velocity over the volume, beside {FINE} x {FINE} hexahedra, linear between "
-         "their middles. *n-o*: most non-orthogonality, degrees. Meshing: all that leads to the mesh, files included.")
+         "their middles. *n-o*: most non-orthogonality, degrees. ")
 
 
 def main():

@@ -151,7 +151,7 @@ def left_of(rows):
 
 def shown(lines, left):
     """Rows of cells: the kinds that cost most, and the sum."""
-    return [*tables.worst(HEAD, lines[:-1], "elements, most", HEAD, most=True, count=6), tables.row(lines[-1]), "",
+    return [*tables.worst(HEAD, lines[:-1], "elements, most", HEAD, most=True, count=3), tables.row(lines[-1]), "",
             f"Each kind: {tables.put('damage', HEAD, lines)}. Refused, or more than {MOST} times as much: {tables.put('damage-left', LEFT_HEAD, left)}, "
             f"by kind {', '.join(f'{kind} {n}' for kind, n in collections.Counter(r[1] for r in left).items()) or 'none'}."]
 
@@ -161,7 +161,7 @@ def page(rows, command, version):
             f"{len({r['model'] for r in rows})} clean models, each damaged in up to {len({r['kind'] for r in rows})} ways (`bench/models/damages.py`), meshed with default "
             "options (and `--sheets drop`, on one thread), over the undamaged model (divided into as small triangles, where holes need them). CPU times of runs that "
             f"take less than {NOT_THE_TIME} s do not count. *Damaged*: the area of what is no longer there as it was, whichever way it faces; all of it where the "
-            "answer is another body. The six kinds that cost most elements, and all:", "", *shown(lines_of(rows), left_of(rows))]
+            "answer is another body. The three kinds that cost most elements, and all:", "", *shown(lines_of(rows), left_of(rows))]
 
 
 def command(a):

@@ -58,7 +58,7 @@ def tables_of(name, made):
     made = sorted(made, key=lambda r: (-r["poor_free"], -r["low_free"] / r["tets"], r["beta"]))
     rows = [[r["model"], f"{r['tets']:,}", f"{r['beta']:.3f}", f"{r['angle']:.1f}", f"{r['poor']:.0f}", f"{r['poor_free']:.0f}", f"{r['low_free']:.0f}",
              f"{r['hausdorff']:.3f}", f"{r['cpu']:.1f}"] for r in made]
-    return ["The worst ten:", "", *worst(HEAD, rows, "of these not forced", HEAD, most=True), "", f"Each: {put('derived-' + name.replace(' ', '-'), HEAD, rows)}.", ""]
+    return ["The worst five:", "", *worst(HEAD, rows, "of these not forced", HEAD, most=True, count=5), "", f"Each: {put('derived-' + name.replace(' ', '-'), HEAD, rows)}.", ""]
 
 
 def main():
@@ -76,8 +76,7 @@ def main():
     command = "bench/run.sh derived" + (f" --every {a.every}" if a.every > 1 else "") + (" --automatic" if a.automatic else "")
     text = ["# The clean models and what is derived from them", "",
             f"{written_by(command)} over {len(models)} surfaces "
-            f"(`bench/models/get-models.sh`, `bench/models/derive-models.sh`), {a.jobs} at a time. What forced means: "
-            "`docs/how/sizes-and-surface.md`. The worst ten at automatic sizes, each around its worst element, forced or not "
+            f"(`bench/models/get-models.sh`, `bench/models/derive-models.sh`), {a.jobs} at a time. *Forced*: `docs/how/sizes-and-surface.md`. The worst ten at automatic sizes, each around its worst element, forced or not "
             "(`bench/pages/pictures.sh`):", "", "![](../images/derived-worst.png)", ""]
     with concurrent.futures.ThreadPoolExecutor(a.jobs) as pool:
         for name, options in list(RUNS.items())[:1 if a.automatic else 2]:

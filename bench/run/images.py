@@ -212,16 +212,18 @@ def write_page(results):
 
 
 ABOUT = """Volumes of `bench/models/get-volumes.sh`, one thread, each label judged against its voxels (`octafront_judge_image`). Volume errors and Dice are of
-labels of 1,000 voxels and more; the two-sided Hausdorff distance, in voxels, is of all labels. Nets alone, before sizes, are
-measured in `docs/how/image-surfaces.md`."""
+labels of 1,000 voxels and more; the two-sided Hausdorff distance, in voxels, is of all labels. Nets alone: `docs/how/image-surfaces.md`."""
+
+
+NOT_SHOWN = ("skull strip, 6 mm", "natbrainlab, 4 mm", "Cranium, its mask", "Cranium as DICOM", "JHU white matter 1 mm, 3 mm")
 
 
 def shown(rows, beside):
     """Rows of cells."""
     columns = ["volume", "labels kept", "elements", "CPU s", "worst volume error", "least Dice", "Hausdorff, voxels", "below .1 or 8°"]
-    return [*tables.some(HEAD, rows, columns), "", f"With pieces, shapes, how many labels miss 1 % and .97, and what forces elements below .4: {tables.put('images', HEAD, rows)}.", "",
-            "Beside CGAL 5.5's Mesh_3, with the criteria of its manual's example in proportion to the size (facets of 6, distance 4, cells of 8):", "",
-            *tables.some(HEAD, beside, columns), "",
+    return [*tables.some(HEAD, [r for r in rows if r[0] not in NOT_SHOWN], columns), "", f"With pieces, shapes, how many labels miss 1 % and .97, and what forces elements below .4: {tables.put('images', HEAD, rows)}.", "",
+            "CGAL 5.5's Mesh_3 on the same, with the criteria of its manual's example in proportion to the size (facets of 6, distance 4, cells of 8):", "",
+            *tables.some(HEAD, [r for r in beside if not r[0].endswith(": Octafront")], columns), "",
             f"Each: {tables.put('images-beside', HEAD, beside)}."]
 
 

@@ -161,8 +161,8 @@ def line(name, rows):
 def shown(lines, failed):
     """Rows of cells: the kinds of which not all is right, and the sum."""
     return [*tables.table(HEAD, [c for c in lines if c[HEAD.index("all right")] != c[1] or c[0] == "all"]), "",
-            f"Each kind: {tables.put('repair-known', HEAD, lines)}.", "", f"## The {len(failed)} failed", "", *tables.table(FAILED_HEAD, failed[:20]), "",
-            f"Each: {tables.put('repair-known-failed', FAILED_HEAD, failed)}."]
+            f"Each kind: {tables.put('repair-known', HEAD, lines)}.", "",
+            f"The {len(failed)} that failed, and what was wrong: {tables.put('repair-known-failed', FAILED_HEAD, failed)}."]
 
 
 def page(rows, command):
@@ -171,7 +171,7 @@ def page(rows, command):
         "# Damaged models whose answer is known", "", f"{written_by(command, {r['origin'] for r in rows})}.", "",
         f"{len(rows)} clean models, fetched and generated, damaged in known ways (`bench/models/damage_models.py` says how), repaired and",
         "meshed with default options and `--sheets drop`, and measured against the undamaged model (`bench/judges/judge_answer.cpp`), which repair never sees:", "",
-        f"- **meshed**: `octafront mesh` gave a mesh. **All right**: the repaired surface and the mesh pass every test below.",
+        f"- **All right**: the repaired surface and the mesh pass every test below.",
         "- **topology**: valid, 2-manifold; components, shells and genus those of the undamaged model, where they are known (not the",
         "  genus of united copies that are not convex).",
         f"- **farthest**: two-sided distance to the undamaged model at most {100 * TOLERANCE:g} % of the diagonal for the repaired surface, the tolerance,",

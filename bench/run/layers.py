@@ -14,7 +14,7 @@ import tempfile
 
 from bench import ours
 from bench.pages.origin import written_by
-from bench.pages.tables import MEASURED, put, rewrite, table, worst
+from bench.pages.tables import MEASURED, put, rewrite, table
 from bench.process import run_bounded
 
 ROOT = pathlib.Path(__file__).resolve().parents[2]
@@ -96,7 +96,7 @@ def each(results):
 
 def shown(sums, rows):
     """Rows of cells."""
-    return [*table(HEAD, sums), "", "The worst:", "", *worst(WORST_HEAD, rows, "full, %", WORST_HEAD, count=6), "", f"Each: {put('layers', WORST_HEAD, rows)}."]
+    return [*table(HEAD, sums), "", f"Each: {put('layers', WORST_HEAD, rows)}."]
 
 
 def lines_of(results):

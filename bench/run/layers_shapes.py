@@ -123,7 +123,7 @@ ABOUT = ("Generated bodies, growth 1.2, layers on all of it or, where ends are f
 
 def shown(rows):
     return [*tables.spread_by("layers x first height", HEAD, rows, ["full, %", "growth off by", "ends off by", "SJ", "n-o", "skewness", "CPU s"]), "",
-            "Least full:", "", *tables.worst(HEAD, rows, "full, %", [*HEAD[:5], *HEAD[7:11]], count=6), "", f"Each: {tables.put('layers-shapes', HEAD, rows)}."]
+            f"Each: {tables.put('layers-shapes', HEAD, rows)}."]
 
 
 def main():

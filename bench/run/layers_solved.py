@@ -166,7 +166,7 @@ HEAD = ["mesh", "cells", "n-o", "section off, %", "velocity off, %", "dp/dz off,
 
 
 ABOUT = (f"A pipe of radius 1 and length {LENGTH:g}, Reynolds number {2 * MEAN * RADIUS / VISCOSITY:.0f}, Poiseuille's profile at the inlet; 5 layers of 1/10, growth 1.3, on "
-         "its wall, ends bare. OpenFOAM's simpleFoam (v1912), second order throughout, until residuals fall below 1e-6; compared from .4 to .8 of the length, with "
+         "its wall. OpenFOAM's simpleFoam (v1912), second order throughout, until residuals fall below 1e-6; compared from .4 to .8 of the length, with "
          "Poiseuille's flow of the same flux through a circle as large as the mesh's section (*section*: that over pi). *Velocity*: root mean square over the "
          "volume; *dp/dz*: slope of the pressure; *shear*: on the wall, mean, and root mean square over its area.")
 

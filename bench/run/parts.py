@@ -29,19 +29,21 @@ def shown(told):
     for name, text in told.items():
         for what, (head, rows) in zip(("divided", "written"), tables.parsed(text)):
             every.append((what, ["model", *head], [[name, *row] for row in rows]))
-        lines += [f"- {name}: {text.splitlines()[0]}"]
+        lines += [] if lines else [f"{name}: {text.splitlines()[0]}."]
     for what in ("divided", "written"):
         head = next(head for kind, head, _ in every if kind == what)
         rows = [row for kind, _, its in every if kind == what for row in its]
-        lines += ["", *tables.table(head, rows), "", f"As a file: {tables.put(f'parts-{what}', head, rows)}."]
+        first = [row for row in rows if row[0] == rows[0][0]]
+        lines += ["", *tables.some(head, first, [c for c in head if c not in ("model", "least", "most", "CPU s" if what == "written" else "")]), "",
+                  f"With another model: {tables.put(f'parts-{what}', head, rows)}."]
     return lines
 
 
 def main():
     build, elements = pathlib.Path(sys.argv[1]), sys.argv[2] if len(sys.argv) > 2 else "2e6"
     tables.write("parts", ["# Meshes in parts", "", f"""{written_by(f'bench/run.sh parts {elements}')}: what the division by the curve is worth beside METIS, and what writing eight parts
-costs beside one file ([how](../use/parts.md)). CPU seconds are those of all threads. "Least" and "most" are the elements of the smallest and largest part;
-ghosts are counted once for each part that has them. Memory is the highest while it lasts, the mesh included.""", "", *shown(measured(build, elements))])
+costs beside one file ([how](../use/parts.md)). CPU seconds are those of all threads.
+Ghosts are counted once for each part that has them. Memory is the highest while it lasts, the mesh included.""", "", *shown(measured(build, elements))])
 
 
 if __name__ == "__main__":

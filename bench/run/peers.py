@@ -114,7 +114,8 @@ def shown(rows, surface):
     its = [r for r in rows if r[0] == surface]
     failed = collections.Counter(r[2] for r in its if r[-1] != "valid")
     said = f" Without a valid mesh: {', '.join(f'{mesher} {n}' for mesher, n in failed.items())}." if failed else ""
-    return [*spread_by("mesher", HEAD, its, [c for c in HEAD[5:-1] if c != "most °"]), "", f"Median, least and most of the meshes that there are.{said}"]
+    made = {r[2] for r in its if r[-1] == "valid"}
+    return [*spread_by("mesher", HEAD, [r for r in its if r[2] in made], [c for c in HEAD[5:-1] if c not in ("MB", "most °")]), "", f"Median, least and most of the meshes that there are.{said}"]
 
 
 def main():

@@ -246,16 +246,17 @@ def turned_ring(folder, program):
 ABOUT = """# Periodic cells
 
 {written}: a unit cell, one thread, CPU seconds of whole processes; meshes are read by meshio.
-*Pairs*: nodes at the high end along x, y and z, how many of them have no partner at the low end within 1e-9, and the largest difference of the coordinates that
-should be equal. *with*, *without*: `--periodic xyz` or not. The ball of radius .3 sits at a corner of the cell: eight pieces of one region. Gmsh 4.8.4 cuts its spheres by OpenCASCADE
-and pairs its faces with `setPeriodic`. A sector of 30 degrees of a ring of radius 1 to 2, .1 thick, is paired by `--periodic 30@z`: nodes on the side that is turned; the one with curved sides is 1 high, its
-nodes and those of images are counted by the equations of the file.
+*With*, *without*: `--periodic xyz` or not. In the columns: nodes at the high end that have no partner at the low end within 1e-9, and the largest difference of coordinates that should be equal. The ball of radius .3 sits at a corner of the cell. Gmsh 4.8.4 cuts spheres by OpenCASCADE and pairs faces with `setPeriodic`. A sector of 30 degrees of a ring of radius 1 to 2, .1 thick, is paired by `--periodic 30@z`; the one with curved sides is 1 high.
 """
+
+
+COARSER = ("block, size 0.1,", "ball at a corner, size 0.06", "the same, Gmsh, size 0.06", "sector of a ring, size 0.05", "the same, Gmsh, size 0.05")
 
 
 def shown(rows):
     """Rows of cells."""
-    return [*tables.some(HEAD, rows, [c for c in HEAD if c not in ("most °", "pairs")]), "", f"With the numbers of pairs: {tables.put('periodic', HEAD, rows)}."]
+    finer = [r for r in rows if not r[0].startswith(COARSER)]
+    return [*tables.some(HEAD, finer, [c for c in HEAD if c not in ("most °", "pairs")]), "", f"With coarser sizes and the numbers of pairs: {tables.put('periodic', HEAD, rows)}."]
 
 
 def main():

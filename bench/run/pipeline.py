@@ -68,7 +68,7 @@ def lines_of(rows):
 
 
 def beside_lines(ratios):
-    return [*spread_by("elements", BESIDE_HEAD, ratios, BESIDE_HEAD[2:8]), "", f"Median, least and most. Each: {put('pipeline-beside', BESIDE_HEAD, ratios)}."]
+    return spread_by("elements", BESIDE_HEAD, ratios, BESIDE_HEAD[2:8])
 
 
 def main():
@@ -90,7 +90,7 @@ def main():
     said = f"{written_by('bench/run.sh pipeline')}, the least of {args.runs} runs."
     rewrite(PAGE, "pipeline", [said, "", *lines_of(rows)])
     if args.beside:
-        rewrite(PAGE, "pipeline beside", [f"{written_by('bench/run.sh pipeline --beside PROGRAM')}.", "", *beside_lines(ratios)])
+        print(*beside_lines(ratios), sep="\n")
 
 
 if __name__ == "__main__":

@@ -102,8 +102,8 @@ def cells_of(name, rows):
 
 
 def shown(rows):
-    """Without those of the split dual, which a page has no room for."""
-    few = [row for row in rows if "split" not in row[1]]
+    """Without those of the split dual and of two models, which a page has no room for."""
+    few = [row for row in rows if "split" not in row[1] and row[0] not in ("ball", "gear")]
     return [*tables.some(HEAD, few, [column for column in HEAD if column != "s"]), "", f"Each, with seconds: {tables.put('polyhedral', HEAD, rows)}."]
 
 
@@ -126,9 +126,7 @@ def flow_rows(program):
 
 ABOUT = ("`octafront convert --polyhedral` from the tetrahedra (and wedges of 4 layers, 1/10 of the edges, growth 1.2) of one mesh, beside OpenFOAM's polyDualMesh "
          "(v1912, feature angle 40; *split*: -concaveMultiCells -splitAllFaces), which cannot carry zones. *n-o*: non-orthogonality in degrees, most and "
-         "mean; *skewness*: checkMesh wants at most 4; *volume*: beside that of the tetrahedra, whose chords lie inside of convex bodies; *columns*: faces of the layered "
-         "patch on which all layers stand as prisms one over the other (at the rim of a patch they have more corners, and do not count); *s*: wall seconds "
-         "of one thread, reading and writing included.")
+         "mean; *skewness*: checkMesh wants at most 4; *volume*: beside that of the tetrahedra, whose chords lie inside of convex bodies; *columns*: faces of the layered patch on which all layers stand as prisms one over the other.")
 
 
 def main():
@@ -153,7 +151,7 @@ def main():
     if not a.no_flow:
         solved = flow_rows(program)
         lines += ["", "## A laminar pipe", "", "Poiseuille's flow as on [the page of layers](layers-solved.md), whose words these are.", "",
-                  *tables.table(FLOW_HEAD, solved), "", f"As a file: {tables.put('polyhedral-flow', FLOW_HEAD, solved)}."]
+                  *tables.some(FLOW_HEAD, solved, [c for c in FLOW_HEAD if c not in ("iterations", "s")]), "", f"As a file: {tables.put('polyhedral-flow', FLOW_HEAD, solved)}."]
     tables.write("polyhedral", lines)
 
 

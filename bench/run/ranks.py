@@ -62,15 +62,6 @@ def rows_of_stages(told, ranks):
                f"{sum(talking) / len(talking):.2f}", f"{seconds:.2f}"]
 
 
-def rows_of_memory(told):
-    """MB of the first rank: the peak up to the end of each stage."""
-    for ranks in sorted(told):
-        peaks = [max(s["counters"].get("peak memory bytes so far", 0) for s in told[ranks]["stages"] if s["name"].startswith(name))
-                 for name in STAGES]
-        if ranks > 1:
-            yield [ranks, *(f"{p / 1e6:.0f}" for p in peaks)]
-
-
 def seconds_alone(alone):
     """CPU seconds of one process: of all stages, and of what ranks share."""
     return alone["cpu_seconds"], sum(seconds for (_, shared), seconds in parts_of(alone).items() if shared)
@@ -179,9 +170,7 @@ def shown(runs, stages):
     """Rows of cells: of all runs; of each stage of those with the first number of elements."""
     columns = [c for c in HEAD if c not in ("hash", "least peak memory of a rank, GB")]
     return [*tables.some(HEAD, runs, columns), "", f"Hashes of those of one number of elements are one: {tables.put('ranks', HEAD, runs)}.", "",
-            "Of each stage, with 2 ranks and more: MB that a rank takes; the longest share over the mean one; the mean seconds in shared work and in talk, waiting "
-            "included; the whole.", "", *tables.spread_by("stage", STAGE_HEAD, stages, STAGE_HEAD[2:]), "",
-            f"Median, least and most. Each: {tables.put('ranks-stages', STAGE_HEAD, stages)}."]
+            f"Of each stage, with 2 ranks and more: {tables.put('ranks-stages', STAGE_HEAD, stages)}."]
 
 
 def page(told, larger, model, elements, args):
@@ -193,11 +182,9 @@ def page(told, larger, model, elements, args):
              "wall times say only who waits: cores are fewer, and others may work beside. How it is used: [ranks](../use/ranks.md).", "",
              *shown([row_of_run(runs[n], n) for runs in (told, larger) for n in sorted(runs)],
                     [row for n in sorted(told) if n > 1 for row in rows_of_stages(told[n], n)]), "",
-             *(["Peak memory of the first rank up to the end of each stage, of the larger number, MB:", "",
-                *tables.table(["ranks", *STAGES], rows_of_memory(larger)), ""] if larger else []),
              f"Of the {whole:.1f} CPU seconds of a process alone, lattice, front, pieces of improvement and check, which ranks share, take "
-             f"{shared:.1f}: {100 * serial:.0f} % are done by every rank. Without any cost of talk, that bounds what ranks gain (Amdahl):", "",
-             *tables.table(["ranks", "times as fast, at most"], [[f"{p:,}", f"{1 / (serial + (1 - serial) / p):.2f}"] for p in (2, 4, 16, 64, 1024)]), ""]
+             f"{shared:.1f}: {100 * serial:.0f} % are done by every rank. Without any cost of talk, ranks are at most so many times as fast (Amdahl): "
+             + ", ".join(f"{p:,} ranks {1 / (serial + (1 - serial) / p):.2f}" for p in (2, 4, 16, 64, 1024)) + ".", ""]
     if larger:
         lines += prediction(told, larger, RANKS_OF_LARGER)
     return lines

@@ -171,10 +171,9 @@ def summary(rows):
         f"angles {FTETWILD['angles'][0]}–{FTETWILD['angles'][1]}°, mean β {FTETWILD['mean beta']}, not manifold {FTETWILD['not manifold']}."]
 
 
-def rows_and_spread(rows):
+def each(rows):
     """Rows of cells."""
-    return [*tables.spread(HEAD, rows, [c for c in HEAD[4:-1] if c != "only input, only mesh inside, points"]), "",
-            f"Each, and what was done to it: {tables.put('repair-status', HEAD, rows)}."]
+    return [f"Each, and what was done to it: {tables.put('repair-status', HEAD, rows)}."]
 
 
 def page(rows):
@@ -182,9 +181,8 @@ def page(rows):
             f"{written_by('bench/run.sh repair', {r['origin'] for r in rows})}. Models: `bench/models/get-models.sh`. Distances in ‰ of the diagonal, measured by "
             "sampling from the boundary to the input, except where what closes a hole is nearest. *Lost*: the part of the input's area farther than 1 ‰ from the "
             "boundary, and outside of it (sheets, fins) or inside (inner walls, debris). In the rows, defects: O open, E non-manifold edge, V non-manifold vertex, "
-            "S self-intersection, R misoriented, I inside out, D degenerate, U unused vertices; *only input, only mesh inside*: random points where the input's "
-            "generalised winding number is sure and the mesh says else; turned and doubled faces mislead the number.", "",
-            *summary(rows), "", *rows_and_spread([cells_of(r) for r in rows]), "", "![before and after](../images/repair.png)"]
+            "S self-intersection, R misoriented, I inside out, D degenerate, U unused vertices; *only input, only mesh inside*: random points where the input's generalised winding number is sure and the mesh says else.", "",
+            *summary(rows), "", *each([cells_of(r) for r in rows]), "", "![before and after](../images/repair.png)"]
 
 
 def main():

@@ -143,7 +143,7 @@ def page(auto, kept, dirty):
             "What the surface allows: the best β of any element inside on its worst triangle, and its smallest angle inside between two triangles. "
             "Elements below β = .1: on a triangle that allows no better one (*forced*); with an edge of such a triangle, which the same needle makes poor; "
             "others. Then how many cavities the front left, and which rung of the closing ladder closed how many.", "",
-            *spread(KEPT_HEAD, kept, [c for c in KEPT_HEAD[3:] if not c.startswith("whole")]), "", f"Each: {put('status-kept', KEPT_HEAD, kept)}.", "",
+            *spread(KEPT_HEAD, kept, [c for c in KEPT_HEAD[3:] if not c.startswith(("whole", "by "))]), "", f"Each: {put('status-kept', KEPT_HEAD, kept)}.", "",
             "## Dirty models", "",
             f"Each, with its known defects and the first line of what was said: {put('status-dirty', DIRTY_HEAD, dirty)} (O open, E non-manifold edge, V "
             "non-manifold vertex, S self-intersection, R misoriented, I inside out, D degenerate, U unused vertices)."]
@@ -163,7 +163,7 @@ def main():
     dirty = dirty_rows(args.build, [r for r in rows if r["set"] == "dirty"], args.timeout, pool)
     if not args.only:
         write("status", ["# Status over all test models", "",
-                         f"{written_by('bench/run.sh status')}. Models: `bench/models/get-models.sh`. Two at a time, so times are rough. Every file is read "
+                         f"{written_by('bench/run.sh status')}. Models: `bench/models/get-models.sh`. Every file is read "
                          "back and judged by `bench/judges/evaluate.cpp`: validity by exact signs, two-sided Hausdorff distance to the input by sampling, volume "
                          "against the enclosed volume of the input.", "",
                          *page([cells(row, r, True) for row, r in auto], [kept_cells(row, r) for row, r in kept], dirty)])

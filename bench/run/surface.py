@@ -14,7 +14,7 @@ import subprocess
 import tempfile
 
 from bench.pages.origin import ROOT, written_by
-from bench.pages.tables import put, row, spread_by, table, write
+from bench.pages.tables import number, put, row, spread_by, table, write
 from bench.process import run_measured
 
 SETTINGS = [("automatic", None), ("diagonal / 40", 40), ("diagonal / 100", 100)]
@@ -225,10 +225,11 @@ ABOUT = ("*Forced* are triangles with a corner between two feature edges that en
 
 def page(summary, each, rates, growths, compared):
     """Rows of cells: the lines of the page."""
+    speeds = sorted((r[SPEED.index("triangles per CPU second")] for r in rates), key=number)
     lines = ["How many of the models reach each target:", "", *table(SUMMARY, summary), "",
              *spread_by("size", HEAD, each, HEAD[2:8]), "", f"Median, least and most. Each: {put('surface-status', HEAD, each)}.", "",
-             f"Speed at {SPEED_TRIANGLES:,} triangles, one thread:", "", *table(SPEED, rates), "",
-             "CPU seconds of size field and surface front by the number of triangles:", "", *table(GROWTH, growths)]
+             f"{SPEED_TRIANGLES:,} triangles, one thread: {speeds[0]} to {speeds[-1]} triangles per CPU second on {len(rates)} models.", "",
+             f"From {GROWTH[1]} to {GROWTH[-2]} triangles CPU time grows as triangles to the power {', '.join(f'{r[-1]} ({r[0]})' for r in growths)}."]
     if compared:
         lines += ["", f"{len({r[0] for r in compared})} of the models at diagonal / {PEER_DIVISOR} by others too, one thread, judged by the same program (CPU seconds of "
                   "theirs include reading and writing files):", "", *spread_by("remesher", PEER_HEAD, compared, PEER_HEAD[3:]), "",

@@ -19,6 +19,7 @@ from bench.peers import gmsh, tetgen
 THICKNESS = [1e-1, 1e-2, 1e-3, 1e-4, 1e-5, 1e-6]
 HEAD = ["body", "thickness", "mesher", "volume, %", "elements", "least angle", "most angle", "CPU s"]
 BEFORE = "before"
+SHOWN = ("0.1", "0.001", "1e-06")  # thicknesses whose volumes the page shows
 SIZE = 0.05  # of those that are asked for a size: bodies are 1 to 2 across
 
 
@@ -112,12 +113,14 @@ def judged(build, run, surface, timeout):
 
 def shown(rows):
     """Rows of cells: volumes side by side, the spread of the rest."""
+    link = tables.put("thin-bodies", HEAD, rows)
+    rows = [r for r in rows if r[2] != BEFORE]
     meshers = list(dict.fromkeys(r[2] for r in rows))
-    bodies = list(dict.fromkeys((r[0], r[1]) for r in rows))
+    bodies = list(dict.fromkeys((r[0], r[1]) for r in rows if r[1] in SHOWN))
     volume = {(r[0], r[1], r[2]): r[3] if tables.number(r[3]) is not None else "-" for r in rows}
     return ["Volume against the input's, in percent (-: no mesh, or one that is not valid):", "",
             *tables.table([*HEAD[:2], *meshers], [[*body, *(volume.get((*body, m), "") for m in meshers)] for body in bodies]), "",
-            *tables.spread_by("mesher", HEAD, rows, HEAD[4:]), "", f"Median, least and most. Each: {tables.put('thin-bodies', HEAD, rows)}."]
+            *tables.spread_by("mesher", HEAD, rows, HEAD[4:]), "", f"Median, least and most. Each: {link}."]
 
 
 def main():
@@ -147,9 +150,8 @@ def main():
                     print(tables.row(rows[-1]), flush=True)
     if a.page:
         tables.write("thin-bodies", [
-            "# Thin bodies", "", f"{written_by('bench/run.sh thin --page')}, one thread. *Before*: commit 912d740, by `--before PROGRAM`, on 2026-11-24.", "",
-            "Plates of 1 x 1, discs of radius 1 (48 corners), tubes of radius 1 and height 2 (48 corners), shells of spheres of radius 1 (10,240 triangles), "
-            "turned by some angles; thickness in the same units. Every file is judged by `octafront_evaluate`. Gmsh: surface anew at size "
+            "# Thin bodies", "", f"{written_by('bench/run.sh thin --page')}, one thread.", "",
+            "Plates of 1 x 1, discs of radius 1 (48 corners), tubes of radius 1 and height 2 (48 corners), shells of spheres of radius 1 (10,240 triangles), turned by some angles. Gmsh: surface anew at size "
             f"{SIZE}; TetGen keeps the input's triangles, and fills the cavities of shells, as no hole is marked. At most {a.timeout:.0f} s.", "", *shown(rows)])
 
 

@@ -53,7 +53,7 @@ def rows(told):
 
 def page(told, model, args):
     text = (ROOT / "bench/pages/threads.md.in").read_text()
-    lines = [line for one in told for line in (f"{one['tets']:,} elements:", "", *rows(one), "")]
+    lines = [line for one in told[-1:] for line in (f"{one['tets']:,} elements:", "", *rows(one), "")]
     said = f"{written_by(args)}: {model} from its file, `--elements`, on one thread."
     return text.replace("@SAID@", said).replace("@TABLES@", "\n".join(lines).rstrip())
 

@@ -50,6 +50,11 @@ struct CadInfo {
     std::string name;  ///< "color #ff8000", "layer NAME" of faces; "solids of color #ff8000", ...
     std::size_t faces = 0, solids = 0;
   };
+  /// One of the smallest.
+  struct Small {
+    std::string name;  ///< by which options find it
+    double size = 0;   ///< of an edge its length, of a face twice its area over the length of its edges
+  };
   std::string format;          ///< "STEP", "IGES", "BREP"
   std::string unit;            ///< in words; empty: the file says none
   double to_millimetres = 1;   ///< by which its numbers are multiplied
@@ -61,8 +66,9 @@ struct CadInfo {
   std::vector<Contact> contacts;
   std::vector<std::string> edges;  ///< between faces, by the faces that meet: "face 1|face 2"; each name once
   std::vector<Group> groups;
-  std::uint64_t named_faces = 0;   ///< that have a name in the file
-  std::vector<std::string> notes;  ///< what was found, healed, fused
+  std::vector<Small> shortest_edges, narrowest_faces;  ///< eight at most, the smallest first
+  std::uint64_t named_faces = 0;                       ///< that have a name in the file
+  std::vector<std::string> notes;                      ///< what was found, healed, fused
 };
 
 /// Reads, heals and fuses as open_domain() does, and makes no triangles. Throws InputError, OptionError, Cancelled.

@@ -38,7 +38,8 @@ std::string to_json(const std::vector<MoveStep>& history);
 /// Moves every point of a mesh by its displacement, in steps as long as elements stay positive, by exact sign, and
 /// their least beta above half of options.move.least_quality. Where after a step elements are poorer than that quality,
 /// the mesh is improved inside its boundary, and where that is not enough adapted to the lengths that it had at each of
-/// its places: splits, collapses, swaps, walls on the smooth surface that they stand for. Where that is not enough
+/// its places: splits, collapses, swaps, walls on the smooth surface that they stand for; in each step, and to the
+/// length options.size.size, if that is given. Where that is not enough
 /// either, or options.move.remesh asks for it, the walls that moved are meshed anew by generate(). What is left of the
 /// displacement, and fields at points, go along linear, fields of elements stay with their elements and are carried as
 /// carry_fields() does. Patches, regions, curves, sets and names go along; curves and sets of elements not where it is

@@ -39,6 +39,7 @@
 #include <octafront/second_order.h>
 #include <octafront/share_files.h>
 #include <octafront/size_field.h>
+#include <octafront/smallest_features.h>
 #include <octafront/solver_checks.h>
 #include <octafront/surface_mesh.h>
 #include <octafront/tet_mesh.h>

@@ -357,6 +357,13 @@ octafront_job* octafront_order_mesh(const octafront_mesh* mesh);
 octafront_job* octafront_write_page(const octafront_mesh* mesh, const octafront_sizes* sizes, const char* report,
                                     const char* file);
 
+/** -> bytes: draw_picture() of octafront/picture.h as a PNG, of the mesh, or where that is null of the surface as it
+ * is. `file`: it is written there, too; null: to none. Keys of `json`, an object, all of them optional: color, edges,
+ * cut, view, up (texts, as `octafront picture` takes them), width, height (pixels), highlight (an array of places),
+ * names, worst, furniture (true or false), title, unit (texts). The report has "width", "height" and "notes". */
+octafront_job* octafront_picture(const octafront_mesh* mesh, const octafront_surface* surface, const char* json,
+                                 const char* file, int threads);
+
 /** Waits for the next event, `seconds` at most, below 0: as long as it takes. Returns its kind. */
 int octafront_job_wait(octafront_job* job, double seconds, octafront_event* event);
 /** 1, or 0 of a library that was built without threads (OCTAFRONT_THREADS=OFF), as for web pages. There a job does all
@@ -379,6 +386,8 @@ int octafront_job_status(const octafront_job* job);
 const char* octafront_job_message(const octafront_job* job);
 /** JSON, an object: the report of what was done; of a job that failed its evidence: "defects" of a surface. */
 const char* octafront_job_report(octafront_job* job);
+/** The bytes that the job made, valid until it is freed; none: `length` is 0. */
+const char* octafront_job_bytes(const octafront_job* job, size_t* length);
 /** Each gives its object away, once; null if there is none. */
 octafront_surface* octafront_job_take_surface(octafront_job* job);
 octafront_mesh* octafront_job_take_mesh(octafront_job* job);

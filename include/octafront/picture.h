@@ -9,6 +9,7 @@
 #include <optional>
 #include <string>
 #include <string_view>
+#include <utility>
 #include <vector>
 
 namespace octafront {
@@ -77,6 +78,11 @@ std::string to_png(const Picture& picture);
 
 /// Bytes as text, by RFC 4648: for pages and messages that hold a picture.
 std::string to_base64(std::string_view bytes);
+
+/// What the choices of a picture are called, in their order: "quality", "region", "size", "patch", "none"; "elements",
+/// "features", "none". kAuto has no name.
+const std::vector<std::pair<std::string, PictureOptions::Color>>& picture_colors();
+const std::vector<std::pair<std::string, PictureOptions::Edges>>& picture_edges();
 
 /// Reads "x", "-y", "z=12.5", "x=30%", "NX,NY,NZ" or "NX,NY,NZ:X,Y,Z": the axis or normal beyond which all goes, and
 /// where: in the middle, at a coordinate, at a part of the extent, through a point. Throws OptionError.

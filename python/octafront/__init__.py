@@ -21,6 +21,7 @@ from ._fields import CarriedFields
 from ._library import bytes_of as _bytes_of, call as _call
 from ._mesh import Checked, Mesh, mesh_of as _mesh_of
 from ._options import Settings as _Settings, takes_options as _takes_options
+from ._pictures import picture
 from ._ranks import ranks_of as _ranks_of
 from ._sizes import SizeField
 from ._surface import OUTSIDE, Surface, surface_of as _surface_of
@@ -29,7 +30,7 @@ from .errors import (Cancelled, Error, InputError, InternalError, MeshingError, 
 __version__ = _call("version").decode()
 __all__ = ["Cancelled", "CarriedFields", "Checked", "Error", "InputError", "InternalError", "Mesh", "MeshingError", "OUTSIDE",
            "OpenCavityError", "OptionError", "OutputError", "SizeField", "Surface", "adapt", "carry", "check", "complex_of_walls",
-           "errors", "formats", "image_surface", "improve", "join_bodies", "mend", "mesh", "mesh_file", "mesh_image", "metrics", "move", "read",
+           "errors", "formats", "image_surface", "improve", "join_bodies", "mend", "mesh", "mesh_file", "mesh_image", "metrics", "move", "picture", "read",
            "repair", "size_field", "surface"]
 
 

@@ -25,7 +25,8 @@ def of_mesh(mesh):
 
 def _page(mesh):
     if len(mesh) > _LARGEST:
-        return f"<p>In 3D up to {_LARGEST:,} tetrahedra; this one by <code>mesh.save_page('mesh.html')</code>.</p>"
+        return (f"<p>In 3D up to {_LARGEST:,} tetrahedra; this one by <code>mesh.save_page('mesh.html')</code>.</p>"
+                f"<img alt='the mesh' width='600' height='450' src='data:image/png;base64,{_picture(mesh)}'>")
     import tempfile
     with tempfile.TemporaryDirectory() as folder:
         mesh.save_page(folder + "/mesh.html")
@@ -33,6 +34,11 @@ def _page(mesh):
             page = html.escape(file.read())
     return (f"<iframe sandbox='allow-scripts allow-downloads allow-popups' style='width:100%;height:36em;border:0' "
             f"title='the mesh in 3D' srcdoc=\"{page}\"></iframe>")
+
+
+def _picture(mesh):
+    import base64
+    return base64.b64encode(mesh.picture()).decode()
 
 
 def _shown(text):

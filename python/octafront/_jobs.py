@@ -65,6 +65,12 @@ class Job:
         """The address of the surface, mesh or sizes that the job made, or None."""
         return call("job_take_" + kind, self._address)
 
+    def bytes(self):
+        """What the job made of bytes, such as a picture."""
+        length = ctypes.c_size_t()
+        at = call("job_bytes", self._address, ctypes.byref(length))
+        return ctypes.string_at(at, length.value)
+
     def _serve(self, event):
         self._serve_talk(event)
         if event.kind == _SIZES:

@@ -104,6 +104,7 @@ _PROTOTYPES = {
     "metrics": (_handle, _handle, _text, _pointer, _pointer, _size, _pointer, _whole),
     "repair": (_handle, _handle), "check": (_handle, _handle, _text), "order_mesh": (_handle, _handle),
     "write_page": (_handle, _handle, _handle, _text, _text),
+    "picture": (_handle, _handle, _handle, _text, _text, _whole), "job_bytes": (_pointer, _handle, _length),
     "job_wait": (_whole, _handle, _number, ctypes.POINTER(Event)), "job_answer": (None, _handle),
     "job_cancel": (None, _handle), "job_free": (None, _handle), "job_status": (_whole, _handle),
     "job_message": (_text, _handle), "job_report": (_text, _handle), "job_take_surface": (_handle, _handle),

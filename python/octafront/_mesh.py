@@ -336,6 +336,11 @@ class Mesh:
         report = {"quality": self.quality, **self.report}
         Job("write_page", self._handle, self._sizes, json.dumps(report).encode("utf-8", "replace"), file_of(path)).run()
 
+    def picture(self, path=None, **keywords):
+        """octafront.picture() of this mesh: the bytes of a PNG, which is written to `path`, too, if one is given."""
+        import octafront
+        return octafront.picture(self, path, **keywords)
+
     def boundary(self):
         """The boundary as a Surface, with its patches."""
         from ._surface import Surface

@@ -156,6 +156,11 @@ class Surface:
         """Region r is called region_names[r]."""
         return self._handle.names("region_names")
 
+    def picture(self, path=None, **keywords):
+        """octafront.picture() of this surface: the bytes of a PNG, which is written to `path`, too, if one is given."""
+        import octafront
+        return octafront.picture(self, path, **keywords)
+
     def save(self, path):
         """Writes by the ending: .stl, .obj, .off, .ply. An older file stays whole if that fails: OutputError."""
         Job("write_surface", self._handle, file_of(path)).run()

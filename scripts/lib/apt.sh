@@ -48,5 +48,7 @@ shell_packages=(groff zsh fish python3-jsonschema)
 fem_packages=(python3-dolfinx)
 # What reads images beside us (tests/images): also of --all.
 image_packages=(python3-nibabel python3-pydicom libgdcm-dev libgdcm-tools libtiff-dev)
+# FreeCAD, and a display that nobody sees, for the workbench of addons/freecad: also of --all.
+addon_packages=(freecad xvfb xauth)
 # Other meshers, which some benchmarks run beside ours.
 peer_packages=(tetgen gmsh netgen)

@@ -330,6 +330,18 @@ class CommandLine(unittest.TestCase):
                          {"seat", "plate|bolt", "plate|bolt#2", "bracket|bolt", "bracket|bolt#2", "bolt hole 1", "bolt hole 2"})
         self.assertEqual([p["name"] for p in info["cad_patches"]], info["places"]["patches"])
         self.assertEqual([s.get("product") for s in info["solids"]], ["plate", "bracket", "bolt", "bolt"])
+        self.assertIn(f'shortest edge {info["shortest_edges"][0]["size"]:.4g}, "{info["shortest_edges"][0]["name"]}"', said)
+        self.assertEqual([e["size"] for e in info["shortest_edges"]], sorted(e["size"] for e in info["shortest_edges"]))
+
+    def test_how_small_the_sample_is(self):
+        self.needs_cad()
+        info = json.loads(self.run_cli("info", SAMPLES / "bracket.step", "--json", "-").stdout)
+        self.assertEqual([round(e["size"], 9) for e in info["shortest_edges"][:4]], [6, 6, 6, 6])  # across its plates
+        self.assertAlmostEqual(info["narrowest_faces"][0]["size"], 2 * 240 / 92, places=9)  # 6 x 40
+        checked = json.loads(self.run_cli("check", SAMPLES / "bracket.step", "--json", "-").stdout)
+        self.assertAlmostEqual(checked["thickness"]["least"], 6, delta=.05)
+        self.assertAlmostEqual(checked["shortest_edge"]["length"], 6, places=6)
+        self.assertIn("thinnest", self.run_cli("check", SAMPLES / "gear.obj").stdout)
 
     def test_densities_of_a_step_file_are_those_of_a_job(self):
         self.needs_cad()

@@ -15,7 +15,7 @@ from mcp_client import Client
 from report_schema import breaches
 
 OCTAFRONT, SAMPLES = sys.argv[1], pathlib.Path(sys.argv[2])
-TOOLS = ["inspect", "plan", "mesh", "check", "improve", "adapt", "convert", "explain", "picture"]
+TOOLS = ["inspect", "plan", "mesh", "check", "improve", "adapt", "carry", "move", "convert", "explain", "picture"]
 
 
 class WithServer(unittest.TestCase):
@@ -104,6 +104,41 @@ class Conversation(WithServer):
         self.good("convert", input="c.vtu", output="c.bdf")
         self.assertTrue((self.dir / "c.bdf").exists())
         self.assertIn("beta", " ".join(self.good("explain", file="b.msh")["advice"]))
+
+    def test_what_is_small_is_told_with_places(self):
+        seen = self.good("inspect", input="bracket.stl")
+        self.assertAlmostEqual(seen["thickness"]["least"], 5, delta=.05)  # the wall of the bracket
+        self.assertEqual(len(seen["thickness"]["at"]), 3)
+        self.assertLessEqual(seen["thickness"]["least"], seen["thickness"]["tenth"])
+        self.assertGreater(seen["shortest_edge"]["length"], 0)
+        self.assertIn("thickness", json.dumps(next(t for t in self.client.request("tools/list")["result"]["tools"] if t["name"] == "inspect")["outputSchema"]))
+
+    def with_field(self, mesh, field):
+        """An old VTK file, ASCII, with three numbers at each point."""
+        text = (self.dir / mesh).read_text()
+        count = int(text.split("POINTS ")[1].split()[0])
+        numbers = [float(n) for n in text.split("POINTS ")[1].split()[2:2 + 3 * count]]
+        rows = [field(*numbers[3 * i:3 * i + 3]) for i in range(count)]
+        text = text.partition("POINT_DATA")[0].partition("CELL_DATA")[0]
+        (self.dir / mesh).write_text(f"{text}POINT_DATA {count}\nVECTORS u double\n" + "\n".join("%r %r %r" % row for row in rows) + "\n")
+
+    def test_fields_are_carried_and_move_a_mesh(self):
+        self.good("mesh", input="bracket.stl", output="old.vtk", options={"size": 8, "ascii": True})
+        self.with_field("old.vtk", lambda x, y, z: (0.01 * z, 0.0, 0.002 * x))
+        new = self.good("mesh", input="bracket.stl", output="new.vtu", options={"size": 6})
+        carried = self.good("carry", input=["old.vtk", "new.vtu"], output="both.vtu", options={"carry": "u"})
+        self.assertEqual((carried["carried"][0]["name"], carried["carried"][0]["components"]), ("u", 3))
+        self.assertEqual(carried["carry"]["elements"], new["tets"])
+        self.assertIn(b'Name="u"', (self.dir / "both.vtu").read_bytes())
+        moved = self.good("move", input="both.vtu", output="moved.vtu", options={"displacement": "u"})
+        self.assertEqual(moved["history"][-1]["fraction"], 1)
+        self.assertEqual(self.good("check", input="moved.vtu")["valid"], True)
+        self.refused("carry", "bad_arguments", input="old.vtk", output="x.vtu")
+        self.refused("carry", "bad_arguments", input=["old.vtk", "new.vtu", "new.vtu"], output="x.vtu")
+        self.refused("carry", "outside_folders", input=["old.vtk", "../outside/gear.obj"], output="x.vtu")
+        self.refused("move", "input", input="both.vtu", output="x.vtu", options={"displacement": "nothing"})
+        self.refused("move", "usage", input="both.vtu", output="x.vtu")
+        self.assertFalse((self.dir / "x.vtu").exists())
 
     def test_pictures_are_in_the_answer_or_in_a_file(self):
         answer = self.client.request("tools/call", {"name": "picture", "arguments": {"input": "bracket.stl", "options": {"size": "300x200", "cut": "-x"}}})

@@ -1232,6 +1232,40 @@ class Meshes(Case):
         with self.assertRaises(octafront.OutputError):
             octafront.mesh(*cube(), size=0.5).save_page(self.folder / "nowhere" / "page.html")
 
+    def test_pictures(self):
+        mesh = octafront.mesh(*cube(), size=0.4)
+        png = mesh.picture(self.folder / "cut.png", cut=(1, 0, 0), color="size", size=(300, 200))
+        self.assertEqual((png[:8], png[16:24]), (b"\x89PNG\r\n\x1a\n", b"\0\0\1\x2c\0\0\0\xc8"))
+        self.assertEqual((self.folder / "cut.png").read_bytes(), png)
+        self.assertEqual(octafront.picture(mesh, cut="x", color="size", size=(300, 200), threads=2), png)
+        mesh.save(self.folder / "m.vtu")
+        self.assertEqual(octafront.picture(self.folder / "m.vtu", cut="x", color="size", size=(300, 200)), png)
+        for other in (mesh.picture(size=(300, 200)), mesh.picture(worst=True, size=(300, 200)), mesh.boundary().picture(size=(300, 200)),
+                      octafront.picture(octafront.Surface(*cube()), view="top", up="x", bare=True, size=(300, 200), edges="features")):
+            self.assertEqual(other[16:24], png[16:24])
+            self.assertNotEqual(other, png)
+        surface = octafront.Surface(*cube(), patches=np.arange(12) // 2, patch_names=[f"side {i}" for i in range(6)])
+        plain = surface.picture(size=(300, 200))
+        self.assertNotEqual(surface.picture(size=(300, 200), highlight="side 1", names=True), plain)
+        for wrong in ({"cut": "w"}, {"color": "blue"}, {"size": (10, 10)}, {"size": 300}, {"highlight": "nowhere"}, {"view": (0, 0, 0)},
+                      {"path": self.folder / "a.jpg"}):
+            with self.assertRaises(octafront.OptionError, msg=wrong):
+                mesh.picture(**wrong)
+        with self.assertRaises(octafront.OutputError):
+            mesh.picture(self.folder / "nowhere" / "a.png")
+        with self.assertRaises(octafront.Cancelled):
+            mesh.picture(progress=lambda phase, fraction: False)
+
+    def test_large_meshes_are_a_picture_in_notebooks(self):
+        from octafront import _html
+        largest, _html._LARGEST = _html._LARGEST, 10
+        try:
+            shown = octafront.mesh(*cube(), size=0.4)._repr_html_()
+        finally:
+            _html._LARGEST = largest
+        self.assertIn("data:image/png;base64,", shown)
+        self.assertNotIn("<iframe", shown)
+
     def test_repr(self):
         mesh = octafront.mesh(*cube(), size=0.4)
         self.assertIn(f"{len(mesh)} tetrahedra", repr(mesh))

@@ -20,3 +20,7 @@ octafront.mesh(surface, method="best")  # error: arg-type
 octafront.surface(surface, core="none")  # error: call-arg
 octafront.improve(surface)  # error: arg-type
 mesh.points = np.zeros((3, 3))  # error: misc
+
+shown: bytes = octafront.picture(mesh, "a.png", cut=(1, 0, 0), color="size", size=(300, 200))
+octafront.picture("a.vtu", color="blue")  # error: arg-type
+shown = mesh.picture(view="top")

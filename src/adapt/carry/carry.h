@@ -144,8 +144,9 @@ TetIndex holder_of(const TetMesh& mesh, const GoneTets& gone, Vec3 p, const OfRe
 
 /// Spreads what the integral over each region lacks over its elements that changed, evenly among those that stay within
 /// the range of the region so. Where no values in that range have the integral, all are shifted by the same. Returns
-/// for each component how far that goes beyond.
+/// for each component how far that goes beyond. `at_points`: values at points, several of each component in an element,
+/// which the range is of then; or null.
 std::vector<double> spread_rest(const MeshPair& meshes, const GoneTets& gone, const OldValues& old,
-                                std::vector<double>& made);
+                                std::vector<double>& made, const OldValues* at_points = nullptr);
 
 }  // namespace octafront::adapt

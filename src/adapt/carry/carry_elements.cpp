@@ -222,7 +222,7 @@ std::vector<double> carried_at_points(const MeshPair& meshes, const GoneTets& go
                          ElementSlopes::of_corners(meshes.before, functions.at_corners, functions.components)));
   means.find_all(context);
   means.enter_into(report);
-  if (options.keep_integrals) spread_rest(meshes, gone, old_means, means.made);
+  if (options.keep_integrals) spread_rest(meshes, gone, old_means, means.made, &old);
   return with_differences(meshes, gone, old, functions, means.made);
 }
 

@@ -25,8 +25,10 @@ class RegionBalance {
     for (const TetIndex t : changed_) volumes_.push_back(volume_in(meshes.now, t));
   }
 
+  void widen(double value) { least_ = std::min(least_, value), greatest_ = std::max(greatest_, value); }
+
   void add_old(double volume, double value, bool is_gone) {
-    least_ = std::min(least_, value), greatest_ = std::max(greatest_, value);
+    widen(value);
     if (is_gone) wanted_.add(volume * value), scale_ += std::abs(volume * value);
   }
 
@@ -97,7 +99,7 @@ class RegionBalance {
 }  // namespace
 
 std::vector<double> spread_rest(const MeshPair& meshes, const GoneTets& gone, const OldValues& old,
-                                std::vector<double>& made) {
+                                std::vector<double>& made, const OldValues* at_points) {
   const MatchedRegions& regions = meshes.regions;
   const auto changed = group_by_owner(
       regions.count(), static_cast<std::uint32_t>(meshes.now.tets.size()),
@@ -110,6 +112,9 @@ std::vector<double> spread_rest(const MeshPair& meshes, const GoneTets& gone, co
     for (TetIndex t = 0; t < meshes.before.tets.size(); ++t)
       balances[regions.of_old(t)].add_old(volume_in(meshes.before, t), old.values[t * old.components + k],
                                           gone.is_gone(t));
+    if (at_points != nullptr)
+      for (std::size_t i = k; i < at_points->values.size(); i += old.components)
+        balances[regions.of_old(static_cast<TetIndex>(i / at_points->components))].widen(at_points->values[i]);
     for (RegionBalance& balance : balances) beyond[k] = std::max(beyond[k], balance.balance());
   }
   return beyond;

@@ -23,13 +23,15 @@ Row<Options> opposite(const OptionInfo& info, Access field) {
 constexpr std::string_view kPaper = "Paper";
 
 std::vector<Row<Options>> size_rows() {
-  const auto of = [](std::string_view name, std::string_view help, std::string_view group = "Sizes") {
-    return About(name, group, "mesh surface size adapt", help);
-  };
+  const auto of = [](std::string_view name, std::string_view help, std::string_view group = "Sizes",
+                     std::string_view tasks = "mesh surface size adapt") { return About(name, group, tasks, help); };
   using Interior = SizeOptions::Interior;
   return {
       row(
-          of("size", "Edge length, in units of the input").length("H").above(0).common("Edge length"),
+          of("size", "Edge length, in units of the input", "Sizes", "mesh surface size adapt move")
+              .length("H")
+              .above(0)
+              .common("Edge length"),
           [](auto& o) -> auto& { return o.size.size; }),
       row(
           of("elements", "Number of tetrahedra wanted, met within 15 %")

@@ -262,6 +262,11 @@ const char* octafront_job_report(octafront_job* job) {
   return job->report_text();
 }
 
+const char* octafront_job_bytes(const octafront_job* job, size_t* length) {
+  *length = job->bytes.size();
+  return job->bytes.data();
+}
+
 octafront_surface* octafront_job_take_surface(octafront_job* job) {
   return job->surface.release();
 }

@@ -45,6 +45,7 @@ struct octafront_job {
     octafront::together(context.ranks, stage, [&] { work(context); });
   }
   Json report = Json::object();
+  std::string bytes;
   std::unique_ptr<octafront_surface> surface;
   std::unique_ptr<octafront_mesh> mesh;
   std::unique_ptr<octafront_sizes> sizes;

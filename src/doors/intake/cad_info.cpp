@@ -60,12 +60,29 @@ class CadTeller {
   std::vector<std::string> curves() const {
     std::set<std::string> curves;
     for (const cad::CadEdge& edge : model_.edges) {
-      std::set<std::uint32_t> patches;
-      for (const std::uint32_t f : edge.faces) patches.insert(patch_of_[f]);
-      const std::vector<std::uint32_t> in_order(patches.begin(), patches.end());
-      if (in_order.size() > 1) curves.insert(curve_name(in_order, names_));
+      const std::set<std::uint32_t> patches = patches_at(edge);
+      if (patches.size() > 1) curves.insert(name_of(edge));
     }
     return {curves.begin(), curves.end()};
+  }
+
+  /// After patches().
+  std::vector<CadInfo::Small> shortest_edges() const {
+    std::vector<CadInfo::Small> all;
+    for (const cad::CadEdge& edge : model_.edges)
+      if (!edge.is_seam) all.push_back({name_of(edge), edge.length / unit_});
+    return smallest_of(std::move(all));
+  }
+
+  std::vector<CadInfo::Small> narrowest_faces() const {
+    std::vector<double> around(faces_.size(), 0);
+    for (const cad::CadEdge& edge : model_.edges)
+      for (const std::uint32_t f : edge.faces)
+        if (!edge.is_seam) around[f] += edge.length / unit_;
+    std::vector<CadInfo::Small> all;
+    for (std::uint32_t f = 0; f < faces_.size(); ++f)
+      if (around[f] > 0) all.push_back({faces_[f], 2 * area(model_.faces[f].area) / around[f]});
+    return smallest_of(std::move(all));
   }
 
   std::vector<CadInfo::Contact> contacts() const {
@@ -85,6 +102,25 @@ class CadTeller {
 
  private:
   double area(double of_model) const { return of_model / (unit_ * unit_); }
+
+  std::set<std::uint32_t> patches_at(const cad::CadEdge& edge) const {
+    std::set<std::uint32_t> patches;
+    for (const std::uint32_t f : edge.faces) patches.insert(patch_of_[f]);
+    return patches;
+  }
+
+  /// As a mesh will call it; within one patch by that.
+  std::string name_of(const cad::CadEdge& edge) const {
+    const std::set<std::uint32_t> patches = patches_at(edge);
+    return curve_name(std::vector<std::uint32_t>(patches.begin(), patches.end()), names_);
+  }
+
+  static std::vector<CadInfo::Small> smallest_of(std::vector<CadInfo::Small> all) {
+    constexpr std::size_t kTold = 8;
+    std::ranges::stable_sort(all, [](const auto& a, const auto& b) { return a.size < b.size; });
+    all.resize(std::min(kTold, all.size()));
+    return all;
+  }
 
   static std::string colour_of(const cad::Labels& labels) {
     if (!labels.colour) return "";
@@ -118,6 +154,7 @@ CadInfo read_cad_info(const std::string& file, const IntakeOptions& options, con
   CadTeller teller(model, unit);
   info.solids = teller.solids(), info.patches = teller.patches(), info.edges = teller.curves();
   info.contacts = teller.contacts();
+  info.shortest_edges = teller.shortest_edges(), info.narrowest_faces = teller.narrowest_faces();
   for (const cad::LabelGroup& group : cad::label_groups(model))
     info.groups.push_back({group.name, group.faces.size(), group.solids.size()});
   info.faces = cad::face_names(model);

@@ -55,6 +55,11 @@ std::string to_json(const CadInfo& info) {
                        {"solids", patch.solids}});
   Json contacts = Json::array();
   for (const CadInfo::Contact& contact : info.contacts) contacts.push_back(json_of(contact));
+  const auto smallest = [](const std::vector<CadInfo::Small>& of) {
+    Json all = Json::array();
+    for (const CadInfo::Small& one : of) all.push_back({{"name", one.name}, {"size", one.size}});
+    return all;
+  };
   Json groups = Json::array();
   for (const CadInfo::Group& group : info.groups)
     groups.push_back({{"name", group.name}, {"faces", group.faces}, {"solids", group.solids}});
@@ -70,6 +75,8 @@ std::string to_json(const CadInfo& info) {
                  {"contacts", contacts},
                  {"edges", info.edges},
                  {"groups", groups},
+                 {"shortest_edges", smallest(info.shortest_edges)},
+                 {"narrowest_faces", smallest(info.narrowest_faces)},
                  {"named_faces", info.named_faces},
                  {"notes", info.notes}};
   return all.dump(-1, ' ', false, Json::error_handler_t::replace);

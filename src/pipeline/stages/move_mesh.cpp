@@ -92,7 +92,8 @@ class Mover {
     left_.resize(made_.mesh.points.size());
     can_change_ = made_.mesh.wide_cells.empty() && made_.mesh.periods.empty();
     mark_wide();
-    for (const Metric& m : metrics::of_edges(made_.mesh)) lengths_.push_back(1 / std::sqrt(m.xx));
+    for (const Metric& m : metrics::of_edges(made_.mesh))
+      lengths_.push_back(options.size.size.value_or(1 / std::sqrt(m.xx)));
     // Improvement that may turn a whole mesh over is for the end; here poor places are enough.
     options_.improve.level = ImproveOptions::Level::kFast;
   }
@@ -160,12 +161,20 @@ class Mover {
     if (options_.move.boundary_alone) left_ = harmonic_inside(made_.mesh, std::move(left_), context_);
     const double wanted = quality_to_keep();
     double part = 1;
-    while (poorest(points_after(part)) < wanted) {
+    const bool at_once = is_better_than_the_way();
+    while (!at_once && poorest(points_after(part)) < wanted) {
       part /= 2;
       if (part * (1 - done_) < kShortestStep) refuse_to_follow();
     }
     look_for_contact(part);
     go(part);
+  }
+
+  /// Points go straight, also those that are to turn: then the body is worse half way than in the end, which is where
+  /// it is to be mended.
+  bool is_better_than_the_way() const {
+    const double in_the_end = poorest(points_after(1));
+    return in_the_end > 0 && in_the_end > poorest(points_after(0.5));
   }
 
   [[noreturn]] void refuse_to_follow() const {
@@ -213,7 +222,8 @@ class Mover {
   }
 
   void mend() {
-    const char* change = poorest(made_.mesh.points) < options_.move.least_quality ? mended() : "moved";
+    const bool is_poor = poorest(made_.mesh.points) < options_.move.least_quality;
+    const char* change = is_poor || (options_.size.size && can_change_) ? mended() : "moved";
     const QualitySummary quality = summarize_quality(made_.mesh);
     MoveStep step{done_, change, made_.mesh.tets.size(), quality.beta_min, quality.beta_mean, 0};
     for (const auto& [a, b, c, d] : made_.mesh.tets) {
@@ -227,7 +237,8 @@ class Mover {
   const char* mended() {
     Improved better = improve_existing(made_.mesh, options_, nullptr, context_);
     take(std::move(better.mesh), nullptr);
-    if (poorest(made_.mesh.points) >= options_.move.least_quality || !can_change_) return "improved";
+    const bool is_enough = poorest(made_.mesh.points) >= options_.move.least_quality && !options_.size.size;
+    if (is_enough || !can_change_) return "improved";
     if (!options_.move.remesh) {
       adapt();
       if (poorest(made_.mesh.points) >= kQualityOfSteps * options_.move.least_quality) return "adapted";

@@ -81,6 +81,23 @@ std::optional<PictureCut> cut_in(std::string_view text) {
 
 }  // namespace
 
+const std::vector<std::pair<std::string, PictureOptions::Color>>& picture_colors() {
+  using Color = PictureOptions::Color;
+  static const std::vector<std::pair<std::string, Color>> names{{"quality", Color::kQuality},
+                                                                {"region", Color::kRegion},
+                                                                {"size", Color::kSize},
+                                                                {"patch", Color::kPatch},
+                                                                {"none", Color::kPlain}};
+  return names;
+}
+
+const std::vector<std::pair<std::string, PictureOptions::Edges>>& picture_edges() {
+  using Edges = PictureOptions::Edges;
+  static const std::vector<std::pair<std::string, Edges>> names{
+      {"elements", Edges::kElements}, {"features", Edges::kFeatures}, {"none", Edges::kOff}};
+  return names;
+}
+
 PictureCut picture_cut(const std::string& text) {
   if (const std::optional<PictureCut> cut = cut_in(text)) return *cut;
   throw OptionError(

@@ -28,11 +28,6 @@ Vec3 middle_in(const TetMesh& mesh, TetIndex t) {
   return centroid(mesh.points[a], mesh.points[b], mesh.points[c], mesh.points[d]);
 }
 
-double volume_at(const TetMesh& mesh, TetIndex t) {
-  const auto& [a, b, c, d] = mesh.tets[t];
-  return signed_volume(mesh.points[a], mesh.points[b], mesh.points[c], mesh.points[d]);
-}
-
 MeshField of_elements(const TetMesh& mesh, const Function& f) {
   MeshField field{"f", true, 1, {}};
   for (TetIndex t = 0; t < mesh.tets.size(); ++t) field.values.push_back(f(middle_in(mesh, t)));

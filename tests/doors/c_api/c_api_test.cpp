@@ -200,6 +200,48 @@ TEST(CApi, FieldsGoToOtherMeshesThatAreCutAndMove) {
   EXPECT_NE(octafront_mesh_field(moved.get(), 1, &values), 0);
 }
 
+std::string bytes_of(const Job& job) {
+  std::size_t length = 0;
+  const char* bytes = octafront_job_bytes(job.get(), &length);
+  return {bytes, length};
+}
+
+TEST(CApi, PicturesOfMeshesAndSurfacesAreBytesAndFiles) {
+  const Surface cube = surface_of(testing::cube(1));
+  const Mesh mesh = meshed(cube, R"({"size": 0.3})");
+  const std::string file = ::testing::TempDir() + "octafront_c_api_picture.png";
+  const char* asked = R"({"width": 200, "height": 150, "cut": "x", "color": "size", "highlight": null})";
+  const Job of_mesh(octafront_picture(mesh.get(), nullptr, asked, file.c_str(), 1));
+  ASSERT_EQ(status_at_end(of_mesh), OCTAFRONT_DONE) << octafront_job_message(of_mesh.get());
+  const std::string png = bytes_of(of_mesh);
+  EXPECT_EQ(png.substr(0, 8), "\x89PNG\r\n\x1a\n");
+  EXPECT_EQ(png.substr(16, 8), std::string("\0\0\0\xc8\0\0\0\x96", 8)) << "200 across, 150 down";
+  EXPECT_EQ(std::filesystem::file_size(file), png.size());
+  std::filesystem::remove(file);
+  EXPECT_NE(std::string(octafront_job_report(of_mesh.get())).find("\"width\":200"), std::string::npos)
+      << octafront_job_report(of_mesh.get());
+
+  const Job of_surface(octafront_picture(nullptr, cube.get(), asked, nullptr, 2));
+  ASSERT_EQ(status_at_end(of_surface), OCTAFRONT_DONE) << octafront_job_message(of_surface.get());
+  EXPECT_NE(bytes_of(of_surface), png);
+  const Job again(octafront_picture(mesh.get(), nullptr, asked, nullptr, 2));
+  ASSERT_EQ(status_at_end(again), OCTAFRONT_DONE);
+  EXPECT_EQ(bytes_of(again), png) << "another number of threads, other pixels";
+}
+
+TEST(CApi, PicturesThatCannotBeAreRefused) {
+  const Surface cube = surface_of(testing::cube(1));
+  for (const char* asked : {R"({"color": "blue"})", R"({"edges": 3})", R"({"cut": "w"})", R"({"width": 10})",
+                            R"({"highlight": ["nowhere"]})", R"({"worst": true})", R"({"view": "0,0,0"})", "{"}) {
+    const Job job(octafront_picture(nullptr, cube.get(), asked, nullptr, 1));
+    EXPECT_EQ(status_at_end(job), OCTAFRONT_USAGE) << asked;
+    EXPECT_NE(std::string(octafront_job_message(job.get())), "") << asked;
+    EXPECT_EQ(bytes_of(job), "");
+  }
+  const Job job(octafront_picture(nullptr, cube.get(), "{}", "/nowhere/picture.png", 1));
+  EXPECT_EQ(status_at_end(job), OCTAFRONT_OUTPUT);
+}
+
 TEST(CApi, ArraysNamesAndSetsComeBackAsTheyWent) {
   const Surface cube = surface_of(testing::cube(1));
   const Mesh mesh = meshed(cube, R"({"size": 0.5})");

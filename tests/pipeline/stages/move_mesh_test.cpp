@@ -97,6 +97,24 @@ TEST(MoveMesh, AStretchedBlockGetsElementsOfItsOldLengths) {
   EXPECT_GT(moved.history.back().beta_min, 0.2);
 }
 
+TEST(MoveMesh, ALengthThatIsGivenIsThatOfAllEdges) {
+  const TetMesh mesh = kuhn_cube(3);
+  Options options;
+  options.size.size = 0.2;
+  const MovedMesh moved = move_mesh(mesh,
+                                    displacement_on(mesh,
+                                                    [](Vec3 p) {
+                                                      return Vec3{2 * p.x, p.y, p.z};
+                                                    }),
+                                    {}, options);
+  EXPECT_EQ(moved.history.back().change, "adapted");
+  double sum = 0;
+  std::size_t count = 0;
+  for (const Tet& t : moved.mesh.tets)
+    for (const auto& [i, j] : kTetEdges) sum += distance(moved.mesh.points[t[i]], moved.mesh.points[t[j]]), ++count;
+  EXPECT_NEAR(sum / static_cast<double>(count), 0.2, 0.03);
+}
+
 TEST(MoveMesh, AFlattenedBlockIsMendedOnTheWay) {
   const TetMesh mesh = kuhn_cube(4);
   const MovedMesh moved = move_mesh(mesh, displacement_on(mesh, [](Vec3 p) {

@@ -1,0 +1,1 @@
+../../vtk/octafront_vtk.py

@@ -1,0 +1,1 @@
+../freecad/octafront_fem/program.py
