@@ -21,9 +21,23 @@
 #include <linux/landlock.h>
 #include <sys/prctl.h>
 #include <sys/syscall.h>
+#if __has_include(<linux/close_range.h>)
+#include <linux/close_range.h>
+#endif
 #endif
 
 namespace octafront::cli {
+
+std::filesystem::path this_program() {
+#ifdef __APPLE__
+  std::array<char, 4096> name{};
+  auto size = static_cast<std::uint32_t>(name.size());
+  if (_NSGetExecutablePath(name.data(), &size) == 0) return name.data();
+#endif
+  std::error_code error;
+  const std::filesystem::path found = std::filesystem::read_symlink("/proc/self/exe", error);
+  return error ? std::filesystem::path("octafront") : found;
+}
 
 #ifdef _WIN32
 
@@ -45,17 +59,6 @@ bool ChildProcess::read_from(int&, std::string&) {
 namespace {
 
 constexpr int kCannotRun = 127;
-
-std::filesystem::path this_program() {
-#ifdef __APPLE__
-  std::array<char, 4096> name{};
-  auto size = static_cast<std::uint32_t>(name.size());
-  if (_NSGetExecutablePath(name.data(), &size) == 0) return name.data();
-#endif
-  std::error_code error;
-  const std::filesystem::path found = std::filesystem::read_symlink("/proc/self/exe", error);
-  return error ? std::filesystem::path("octafront") : found;
-}
 
 #ifdef __linux__
 
@@ -99,6 +102,13 @@ void shut_in(const std::vector<std::string>& folders, const std::filesystem::pat
 void shut_in(const std::vector<std::string>&, const std::filesystem::path&) {}
 #endif
 
+/// What this process has open beyond the standard streams, such as connections, is not for the program that it becomes.
+void leave_files_behind() {
+#if defined(__linux__) && defined(SYS_close_range) && defined(CLOSE_RANGE_CLOEXEC)
+  ::syscall(SYS_close_range, STDERR_FILENO + 1, ~0U, CLOSE_RANGE_CLOEXEC);
+#endif
+}
+
 [[noreturn]] void become(const std::filesystem::path& program, std::vector<char*>& argv, const ChildSetting& setting,
                          int output, int errors) {
   ::setpgid(0, 0);
@@ -110,6 +120,7 @@ void shut_in(const std::vector<std::string>&, const std::filesystem::path&) {}
   for (const std::string& variable : setting.environment)
     if (const std::size_t equals = variable.find('='); equals != std::string::npos)
       ::setenv(variable.substr(0, equals).c_str(), variable.c_str() + equals + 1, 1);
+  leave_files_behind();
   shut_in(setting.folders, program);
   ::execv(program.c_str(), argv.data());
   ::_exit(kCannotRun);

@@ -7,6 +7,9 @@
 
 namespace octafront::cli {
 
+/// The file of this very program.
+std::filesystem::path this_program();
+
 /// What a program that is started may do.
 struct ChildSetting {
   std::filesystem::path folder;          ///< that it runs in

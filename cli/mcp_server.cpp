@@ -3,7 +3,7 @@
 #include <octafront/error.h>
 #include <octafront/picture.h>
 
-#include "child_process.h"
+#include "plan_run.h"
 #include "terminal.h"
 
 #include <algorithm>
@@ -15,6 +15,7 @@
 #include <deque>
 #include <memory>
 #include <string_view>
+#include <tuple>
 
 #include <fmt/core.h>
 #ifndef _WIN32
@@ -72,12 +73,9 @@ struct Call {
   const Tool* tool = nullptr;
   std::shared_ptr<Batch> batch;
   Plan plan;
-  std::vector<RunResult> results;
-  std::unique_ptr<ChildProcess> child;
-  std::string output, errors, said;  ///< `errors`: what of them is no whole line yet
-  Clock::time_point start, last_told, asked_to_end;
+  std::unique_ptr<PlanRun> run;  ///< of one that runs, or has run
+  Clock::time_point last_told;
   int told = 0;
-  bool is_cancelled = false, is_too_long = false;
 };
 
 class Server {
@@ -101,7 +99,7 @@ class Server {
 
   void wait_for_something() {
     std::array<pollfd, 3> all{{{STDIN_FILENO, POLLIN, 0}, {-1, POLLIN, 0}, {-1, POLLIN, 0}}};
-    if (running_ && running_->child) all[1].fd = running_->child->output(), all[2].fd = running_->child->errors();
+    if (running_) std::tie(all[1].fd, all[2].fd) = running_->run->pipes();
     constexpr int kSoon = 100, kLate = 1000;  // milliseconds
     ::poll(all.data(), all.size(), running_ ? kSoon : kLate);
   }
@@ -193,7 +191,7 @@ class Server {
         waiting_.erase(call);
         return;
       }
-    if (running_ && running_->id == id) running_->is_cancelled = true;
+    if (running_ && running_->id == id) running_->run->cancel();
   }
 
   void take_request(const Json& id, const std::string& method, const Json& parameters,
@@ -260,37 +258,26 @@ class Server {
   void go_on() {
     if (running_) go_on_with(*running_);
     if (running_ || waiting_.empty()) return;
-    running_ = std::move(waiting_.front());
+    std::unique_ptr<Call> next = std::move(waiting_.front());
     waiting_.pop_front();
-    running_->start = Clock::now();
-    start_line(*running_);
-  }
-
-  void start_line(Call& call) {
     try {
-      ChildSetting setting{folders_.home(), folders_.all(), {"OCTAFRONT_PROGRESS=lines"}};
-      call.output.clear(), call.errors.clear(), call.said.clear();
-      call.child = std::make_unique<ChildProcess>(call.plan.lines[call.results.size()], setting);
+      next->run = std::make_unique<PlanRun>(next->plan, folders_);
+      running_ = std::move(next);
     } catch (const Error& error) {
-      const Json id = call.id;
-      const auto batch = call.batch;
-      running_.reset();
-      tell_error(id, {kOurBug, error.what()}, batch);
+      tell_error(next->id, {kOurBug, error.what()}, next->batch);
     }
   }
 
   void go_on_with(Call& call) {
-    std::string errors;
-    const bool has_output = call.child->read_output(call.output), has_errors = call.child->read_errors(errors);
-    hear_child(call, errors);
-    hold_limits(call);
-    if (has_output || has_errors) return;
-    const int status = call.child->wait();
-    call.child.reset();
-    if (call.is_cancelled) return end_cancelled();
-    call.results.push_back(result_of(call, status));
-    // A file that cannot be read at all is not looked at twice.
-    if (call.results.size() < call.plan.lines.size() && status == 0) return start_line(call);
+    try {
+      const bool goes_on = call.run->goes_on();
+      if (const auto progress = call.run->progress()) tell_progress(call, *progress);
+      if (goes_on) return;
+    } catch (const Error& error) {
+      const std::unique_ptr<Call> failed = std::move(running_);
+      return tell_error(failed->id, {kOurBug, error.what()}, failed->batch);
+    }
+    if (call.run->is_cancelled()) return end_cancelled();
     const Json answer = answered(call);
     const std::unique_ptr<Call> done = std::move(running_);
     finish(*done, answer);
@@ -304,63 +291,25 @@ class Server {
     if (call.batch && --call.batch->waiting == 0 && !call.batch->answers.empty()) send(call.batch->answers);
   }
 
-  /// By the clock; who does not end when asked is ended.
-  void hold_limits(Call& call) {
-    constexpr std::chrono::seconds kGrace{3};
-    const auto now = Clock::now();
-    if (call.plan.seconds && std::chrono::duration<double>(now - call.start).count() > *call.plan.seconds)
-      call.is_too_long = true;
-    if (!call.is_cancelled && !call.is_too_long) return;
-    if (call.asked_to_end == Clock::time_point()) call.asked_to_end = now, call.child->interrupt();
-    if (now - call.asked_to_end > kGrace) call.child->kill();
-  }
-
-  /// Progress goes on to the client; the rest is kept.
-  void hear_child(Call& call, const std::string& text) {
-    constexpr std::size_t kMostSaid = 1 << 16;
-    call.errors += text;
-    for (std::size_t end = 0; (end = call.errors.find('\n')) != std::string::npos; call.errors.erase(0, end + 1)) {
-      const std::string line = call.errors.substr(0, end);
-      if (line.starts_with('\x1f'))
-        tell_progress(call, line.substr(1));
-      else if (call.said.size() < kMostSaid)
-        call.said += line + "\n";
-    }
-  }
-  void tell_progress(Call& call, const std::string& line) {
+  void tell_progress(Call& call, const Progress& progress) {
     constexpr std::chrono::milliseconds kBetween{200};
     const auto now = Clock::now();
-    if (call.token.is_null() || call.is_cancelled || now - call.last_told < kBetween) return;
+    if (call.token.is_null() || call.run->is_cancelled() || now - call.last_told < kBetween) return;
     call.last_told = now;
-    const std::size_t tab = line.find('\t');
-    const double share = tab == std::string::npos ? -1 : std::atof(line.c_str() + tab + 1);
-    const std::string stage = line.substr(0, tab);
-    send({{"jsonrpc", "2.0"},
-          {"method", "notifications/progress"},
-          {"params",
-           {{"progressToken", call.token},
-            {"progress", ++call.told},
-            {"message", share < 0 ? stage : fmt::format("{} {:.0f} %", stage, 100 * share)}}}});
-  }
-
-  RunResult result_of(const Call& call, int status) const {
-    RunResult result{status, Json::parse(call.output, nullptr, false), call.said + call.errors};
-    if (result.report.is_discarded()) result.report = nullptr;
-    if (!call.is_too_long) return result;
-    result.status = kLimitReached;
-    if (!result.report.is_object()) result.report = Json::object();
-    result.report["error"] = {
-        {"kind", "limit"},
-        {"code", "seconds"},
-        {"message",
-         fmt::format("the {:g} seconds that it may take are over; no result was written", *call.plan.seconds)}};
-    return result;
+    send(
+        {{"jsonrpc", "2.0"},
+         {"method", "notifications/progress"},
+         {"params",
+          {{"progressToken", call.token},
+           {"progress", ++call.told},
+           {"message", progress.fraction < 0 ? progress.stage
+                                             : fmt::format("{} {:.0f} %", progress.stage, 100 * progress.fraction)}}}});
   }
 
   Json answered(const Call& call) {
-    const bool is_drawn = call.tool->output == Tool::Output::kPicture && call.results.front().report.is_null() &&
-                          call.results.front().status == 0;
-    if (is_drawn && call.output.size() > kLargestPicture) {
+    const bool is_drawn = call.tool->output == Tool::Output::kPicture && call.run->results().front().report.is_null() &&
+                          call.run->results().front().status == 0;
+    if (is_drawn && call.run->output().size() > kLargestPicture) {
       RunResult large{kLimitReached, Json::object(), {}};
       large.report["error"] = {
           {"kind", "limit"},
@@ -368,15 +317,15 @@ class Server {
           {"message", "the picture is too large for an answer: give a smaller size, or an output"}};
       return answer_of(*call.tool, call.arguments, {large}, folders_);
     }
-    return answer_of(*call.tool, call.arguments, call.results, folders_);
+    return answer_of(*call.tool, call.arguments, call.run->results(), folders_);
   }
 
   // What goes out.
 
   void finish(const Call& call, const Json& answer) {
     Json content = Json::array({{{"type", "text"}, {"text", in_a_sentence(*call.tool, answer)}}});
-    if (call.output.starts_with("\x89PNG") && !answer.contains("error"))
-      content.push_back({{"type", "image"}, {"data", to_base64(call.output)}, {"mimeType", "image/png"}});
+    if (call.run && call.run->output().starts_with("\x89PNG") && !answer.contains("error"))
+      content.push_back({{"type", "image"}, {"data", to_base64(call.run->output())}, {"mimeType", "image/png"}});
     Json result{{"content", content}, {"isError", answer.contains("error")}};
     if (protocol_ == "2025-06-18") result["structuredContent"] = answer;
     if (answer.contains("error")) last_failed_ = answer;

@@ -81,6 +81,7 @@ Program::Program() {
   declare_commands();
   declare_helpers();
   declare_server();
+  declare_workbench();
 }
 
 CLI::App* Program::add(const std::string& name, const std::string& help, const std::string& examples,
@@ -238,6 +239,21 @@ void Program::declare_server() {
   server->add_option("--threads", server_limits_.threads, "Threads at most; 0: all")
       ->type_name("N")
       ->check(CLI::Range(0, 1024));
+}
+
+void Program::declare_workbench() {
+  CLI::App* ui = add("ui", "Pick, mesh, look and save in the browser: octafront ui part.step",
+                     "  octafront ui part.step                       opens the browser; ends with the page\n"
+                     "  octafront ui --no-browser --port 8123        says the address, for a browser of one's own\n",
+                     [this](Session&) {
+                       workbench_.opens_browser = !is_without_browser_;
+                       serve_workbench(app_, workbench_);
+                     });
+  ui->add_option("file", workbench_.file, "CAD file, surface, image or mesh that is opened first")->type_name("FILE");
+  ui->add_option("--port", workbench_.port, "Port on the loopback address; 0: any that is free [0]")
+      ->type_name("N")
+      ->check(CLI::Range(0, 65535));
+  ui->add_flag("--no-browser", is_without_browser_, "Only say the address");
 }
 
 void Program::serve() {

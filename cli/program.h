@@ -3,6 +3,7 @@
 #include "arguments.h"
 #include "mcp_tools.h"
 #include "session.h"
+#include "workbench.h"
 
 #include <functional>
 
@@ -28,15 +29,17 @@ class Program {
   void declare_commands();
   void declare_helpers();
   void declare_server();
+  void declare_workbench();
   void help(Session& session) const;
   void serve();
 
   CLI::App app_{"Octafront: tetrahedral meshes from closed surfaces", "octafront"};
   Arguments arguments_;
   std::string topic_, group_, shell_;
-  bool wants_manual_ = false, speaks_mcp_ = false;
+  bool wants_manual_ = false, speaks_mcp_ = false, is_without_browser_ = false;
   std::vector<std::filesystem::path> folders_;
   ToolLimits server_limits_;
+  WorkbenchSetting workbench_;
   std::function<void(Session&)> chosen_;
 };
 

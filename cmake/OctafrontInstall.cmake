@@ -34,6 +34,11 @@ if(TARGET octafront_cli)
   install(DIRECTORY licenses DESTINATION ${doc_dir}/octafront COMPONENT runtime)
 endif()
 
+# The page of the workbench, where scripts/ui.sh has made it.
+if(TARGET octafront_cli)
+  install(FILES ${PROJECT_SOURCE_DIR}/build/ui/octafront-ui.html DESTINATION ${CMAKE_INSTALL_DATADIR}/octafront COMPONENT runtime OPTIONAL)
+endif()
+
 # The manual page and what completes commands in shells, which the tool writes itself.
 if(TARGET octafront_cli)
   set(shell_dir ${PROJECT_BINARY_DIR}/shell)

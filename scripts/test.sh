@@ -23,9 +23,10 @@ if [ $# -gt 0 ] && [[ $1 != -* ]]; then preset=$1 && shift; fi
 need_packages "${build_packages[@]}" "${test_packages[@]}"
 [ ${#which[@]} -gt 0 ] ||
   need_packages "${format_packages[@]}" "${doc_packages[@]}" "${browser_packages[@]}" "${shell_packages[@]}" "${image_packages[@]}" \
-    "${cad_packages[@]}" "${mpi_packages[@]}" "${mpi_test_packages[@]}" "${fem_packages[@]}" "${addon_packages[@]}"
+    "${cad_packages[@]}" "${ui_packages[@]}" "${mpi_packages[@]}" "${mpi_test_packages[@]}" "${fem_packages[@]}" "${addon_packages[@]}"
 [ ${#which[@]} -gt 0 ] || [ -d volumes/nibabel ] || bench/models/get-volumes.sh --readers ||
   echo "the test volumes cannot be fetched here: tests that need them are skipped"
+[ ${#which[@]} -gt 0 ] || scripts/ui.sh || echo "the page of octafront ui cannot be made here: its tests are skipped"
 # A new folder is built whole: by many sources at a time. One that is there stays as it is.
 fresh=()
 [ -f "build/$preset/CMakeCache.txt" ] || fresh=(-DOCTAFRONT_UNITY=ON)

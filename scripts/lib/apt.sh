@@ -30,6 +30,8 @@ cad_packages=(libocct-data-exchange-dev libocct-ocaf-dev libocct-modeling-algori
 # What unpacks the JPEG families of DICOM (OCTAFRONT_GDCM); without it the rest is built.
 gdcm_packages=(libgdcm-dev)
 tiff_packages=(libtiff-dev)
+# What `octafront ui` speaks HTTP with (OCTAFRONT_UI); without it the rest is built.
+ui_packages=(libcpp-httplib-dev pkg-config)
 # What shares the work among processes (OCTAFRONT_MPI); without it the rest is built.
 mpi_packages=(libopenmpi-dev openmpi-bin)
 # And what Python programs speak with: of --all.

@@ -183,36 +183,7 @@ function redraw() {
 }
 
 function listenToPicture() {
-  const fingers = new Map();
-  canvas.addEventListener("pointerdown", (event) => {
-    canvas.setPointerCapture(event.pointerId);
-    fingers.set(event.pointerId, [event.offsetX, event.offsetY]);
-  });
-  const spread = () => {
-    const [a, b] = [...fingers.values()];
-    return { x: (a[0] + b[0]) / 2, y: (a[1] + b[1]) / 2, width: Math.hypot(a[0] - b[0], a[1] - b[1]) || 1 };
-  };
-  canvas.addEventListener("pointermove", (event) => {
-    const last = fingers.get(event.pointerId);
-    if (!last || !now.view) return;
-    const { camera } = now.view, height = canvas.clientHeight, before = fingers.size > 1 ? spread() : null;
-    fingers.set(event.pointerId, [event.offsetX, event.offsetY]);
-    const x = (event.offsetX - last[0]) / height, y = (event.offsetY - last[1]) / height;
-    if (before) {
-      const after = spread();
-      camera.zoom(before.width / after.width);
-      camera.shift((after.x - before.x) / height, (after.y - before.y) / height);
-    } else if (event.buttons & 6 || event.shiftKey) camera.shift(x, y);
-    else camera.turn(3 * x, 3 * y);
-    redraw();
-  });
-  for (const type of ["pointerup", "pointercancel"]) canvas.addEventListener(type, (event) => fingers.delete(event.pointerId));
-  canvas.addEventListener("contextmenu", (event) => event.preventDefault());
-  canvas.addEventListener("wheel", (event) => {
-    event.preventDefault();
-    now.view?.camera.zoom(Math.exp(Math.max(-1, Math.min(1, event.deltaY * (event.deltaMode === 1 ? 0.05 : 0.0015)))));
-    redraw();
-  }, { passive: false });
+  followPointers(canvas, () => now.view?.camera, redraw);
   canvas.addEventListener("keydown", (event) => {
     const turns = { ArrowLeft: [-1, 0], ArrowRight: [1, 0], ArrowUp: [0, -1], ArrowDown: [0, 1] }, zooms = { "+": 0.85, "=": 0.85, "-": 1 / 0.85 };
     if (!now.view || event.ctrlKey || event.metaKey || event.altKey) return;

@@ -97,3 +97,45 @@ function fly(camera, target, distance, draw) {
   };
   step(start);
 }
+
+/** Mouse, wheel and fingers move the camera of `cameraOf()`, if there is one; `click(x, y, event)` hears of what moved nothing. */
+function followPointers(canvas, cameraOf, redraw, click = () => {}) {
+  const fingers = new Map(), STILL = 4; // pixels
+  let moved = 0;
+  const spread = () => {
+    const [a, b] = [...fingers.values()];
+    return { x: (a.x + b.x) / 2, y: (a.y + b.y) / 2, width: Math.hypot(a.x - b.x, a.y - b.y) || 1 };
+  };
+  canvas.addEventListener("pointerdown", (event) => {
+    canvas.setPointerCapture(event.pointerId);
+    fingers.set(event.pointerId, { x: event.offsetX, y: event.offsetY });
+    moved = fingers.size > 1 ? Infinity : 0;
+  });
+  canvas.addEventListener("pointermove", (event) => {
+    const last = fingers.get(event.pointerId), camera = cameraOf();
+    if (!last || !camera) return;
+    const height = canvas.clientHeight, before = fingers.size > 1 ? spread() : null;
+    const x = event.offsetX - last.x, y = event.offsetY - last.y;
+    moved += Math.abs(x) + Math.abs(y);
+    fingers.set(event.pointerId, { x: event.offsetX, y: event.offsetY });
+    if (before) {
+      const now = spread();
+      camera.zoom(before.width / now.width);
+      camera.shift((now.x - before.x) / height, (now.y - before.y) / height);
+    } else if (event.buttons & 6 || event.shiftKey) camera.shift(x / height, y / height);
+    else camera.turn((3 * x) / height, (3 * y) / height);
+    redraw();
+  });
+  const up = (event) => {
+    const last = fingers.get(event.pointerId);
+    fingers.delete(event.pointerId);
+    if (last && moved <= STILL && event.type === "pointerup" && event.button === 0) click(last.x, last.y, event);
+  };
+  for (const type of ["pointerup", "pointercancel"]) canvas.addEventListener(type, up);
+  canvas.addEventListener("contextmenu", (event) => event.preventDefault());
+  canvas.addEventListener("wheel", (event) => {
+    event.preventDefault();
+    cameraOf()?.zoom(Math.exp(Math.max(-1, Math.min(1, event.deltaY * (event.deltaMode === 1 ? 0.05 : 0.0015)))));
+    redraw();
+  }, { passive: false });
+}

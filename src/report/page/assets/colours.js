@@ -2,8 +2,9 @@
 // cool, as in pictures (report/picture); sizes orange against blue, through a light middle; the palette of Okabe and Ito
 // for what has no order.
 
-const FACTS = json("facts");
-const POOR_TO_GOOD = FACTS.poor_to_good;
+/** What a page says of its mesh: scales, and the colours of pictures. */
+let FACTS = null;
+const takeFacts = (facts) => (FACTS = facts);
 const PALETTE = ["#56b4e9", "#e69f00", "#009e73", "#cc79a7", "#0072b2", "#d55e00", "#f0e442", "#9a9a9a"];
 
 const rgb = (hex) => [1, 3, 5].map((i) => parseInt(hex.slice(i, i + 2), 16));
@@ -31,9 +32,9 @@ const css = (colour) => `rgb(${colour.join(" ")})`;
 
 /** What elements can be coloured by. `stops` go from the least value of `ends` to the largest. */
 const QUANTITIES = {
-  beta: { title: "quality β", ends: [0, 1], stops: POOR_TO_GOOD, text: (v) => v.toFixed(2) },
-  min_dihedral: { title: "smallest dihedral angle", ends: [0, 70], stops: POOR_TO_GOOD, text: (v) => v.toFixed(0) + "°" },
-  max_dihedral: { title: "largest dihedral angle", ends: [70, 180], stops: [...POOR_TO_GOOD].reverse(), worstIsHigh: true, text: (v) => v.toFixed(0) + "°" },
+  beta: { title: "quality β", ends: [0, 1], get stops() { return FACTS.poor_to_good; }, text: (v) => v.toFixed(2) },
+  min_dihedral: { title: "smallest dihedral angle", ends: [0, 70], get stops() { return FACTS.poor_to_good; }, text: (v) => v.toFixed(0) + "°" },
+  max_dihedral: { title: "largest dihedral angle", ends: [70, 180], get stops() { return [...FACTS.poor_to_good].reverse(); }, worstIsHigh: true, text: (v) => v.toFixed(0) + "°" },
   size_ratio: {
     title: "size: made over asked",
     ends: [-1, 1],
@@ -41,7 +42,7 @@ const QUANTITIES = {
     worstIsHigh: true,
     text: (v) => "× " + (2 ** v).toFixed(2),
   },
-  layers: { title: "boundary layers at walls", ends: [0, 1], stops: POOR_TO_GOOD, text: (v) => (100 * v).toFixed(0) + " %" },
+  layers: { title: "boundary layers at walls", ends: [0, 1], get stops() { return FACTS.poor_to_good; }, text: (v) => (100 * v).toFixed(0) + " %" },
 };
 
 /**

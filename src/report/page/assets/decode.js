@@ -3,12 +3,15 @@
 const FACES = [1, 2, 3, 0, 3, 2, 0, 1, 3, 0, 2, 1]; // corners of face i, counter-clockwise seen from outside
 const EDGES = [0, 1, 0, 2, 0, 3, 1, 2, 1, 3, 2, 3];
 
+/** The page that has the mesh: this one, or one that was read. */
+let pageOfMesh = document;
+
 function json(id) {
-  return JSON.parse(document.getElementById(id).textContent);
+  return JSON.parse(pageOfMesh.getElementById(id).textContent);
 }
 
 async function streamOf(name) {
-  const element = document.getElementById("mesh-" + name);
+  const element = pageOfMesh.getElementById("mesh-" + name);
   if (!element) return new Uint8Array(0);
   const text = atob(element.textContent);
   element.remove(); // the page need not keep it twice
@@ -101,7 +104,8 @@ function normalized(steps) {
 }
 
 /** The mesh with everything that is known of it. */
-async function decodeMesh() {
+async function decodeMesh(page = document) {
+  pageOfMesh = page;
   const facts = json("facts");
   const names = ["tets", "points", "bends", "region", "boundary", "walls", "beta", "min_dihedral", "max_dihedral", "size_ratio", "layers"];
   const bytes = Object.fromEntries(

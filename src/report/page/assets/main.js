@@ -339,47 +339,11 @@ function listenToControls() {
 // --- mouse, fingers, keys
 
 function listenToPointers() {
-  const fingers = new Map();
-  let moved = 0;
-  const spread = () => {
-    const [a, b] = [...fingers.values()];
-    return { x: (a.x + b.x) / 2, y: (a.y + b.y) / 2, width: Math.hypot(a.x - b.x, a.y - b.y) || 1 };
-  };
-  canvas.addEventListener("pointerdown", (event) => {
-    canvas.setPointerCapture(event.pointerId);
-    fingers.set(event.pointerId, { x: event.offsetX, y: event.offsetY });
-    moved = fingers.size > 1 ? Infinity : 0;
-  });
-  canvas.addEventListener("pointermove", (event) => {
-    const last = fingers.get(event.pointerId);
-    if (!last) return;
-    const height = canvas.clientHeight, before = fingers.size > 1 ? spread() : null;
-    const x = event.offsetX - last.x, y = event.offsetY - last.y;
-    moved += Math.abs(x) + Math.abs(y);
-    fingers.set(event.pointerId, { x: event.offsetX, y: event.offsetY });
-    if (before) {
-      const now = spread();
-      camera.zoom(before.width / now.width);
-      camera.shift((now.x - before.x) / height, (now.y - before.y) / height);
-    } else if (event.buttons & 6 || event.shiftKey) camera.shift(x / height, y / height);
-    else camera.turn((3 * x) / height, (3 * y) / height);
-    redraw();
-  });
-  const up = (event) => {
-    const last = fingers.get(event.pointerId);
-    fingers.delete(event.pointerId);
-    if (!last || moved > 4 || event.type !== "pointerup" || event.button !== 0) return;
+  followPointers(canvas, () => camera, redraw, (x, y) => {
     state.marked = null;
-    choose(picture.elementAt(camera, last.x, last.y));
+    choose(picture.elementAt(camera, x, y));
     redraw();
-  };
-  for (const type of ["pointerup", "pointercancel"]) canvas.addEventListener(type, up);
-  canvas.addEventListener("contextmenu", (event) => event.preventDefault());
-  canvas.addEventListener("wheel", (event) => {
-    event.preventDefault();
-    camera.zoom(Math.exp(Math.max(-1, Math.min(1, event.deltaY * (event.deltaMode === 1 ? 0.05 : 0.0015)))));
-    redraw();
-  }, { passive: false });
+  });
   canvas.addEventListener("dblclick", () => state.selected >= 0 && (fly(camera, middleOf(cornersOf(state.selected)), camera.distance / 2, redraw)));
 }
 
@@ -419,6 +383,7 @@ function listenToTheme() {
 // --- start
 
 const report = json("report");
+takeFacts(json("facts"));
 
 function showNumbers() {
   const inputs = report.inputs ?? [report.input ?? "mesh"];
