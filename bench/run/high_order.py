@@ -129,8 +129,8 @@ def page(rows):
         "## Models, beside Gmsh and Netgen", "",
         f"{len(high_order_models.CAD)} CAD files and {len(high_order_models.SURFACES)} surfaces; edges of a sixteenth of the diagonal. Gmsh: its optimiser on (`HighOrderOptimize` 2). Proven, or"
         " not, by `octafront check` of the files. Scaled Jacobians are the least of each element over that of the straight one; *ours nearer*: in so many"
-        " of the CAD models that both have walls of ours are nearer to the CAD faces on average. Others were stopped after 60 s (surfaces 40 s) of a clock that four users of two cores shared,"
-        " some 15 CPU s, and did not get to all surfaces.", "",
+        " of the CAD models that both have walls of ours are nearer to the CAD faces on average. Others were stopped after 60 s (surfaces 40 s) by the clock, at low priority beside other work on two cores,"
+        " and did not get to all surfaces: how many they finish says little, how good those are does.", "",
         *tables.table(*high_order_models.page(models)), "", link("models", models) + " Octafront at a tenth and a 25th of the diagonal, too.", "",
         "## Solved", "",
         "Poisson's equation, whose solution is 0 on the walls: (1 - r²) eˣ in a ball of radius 1; waves times r² - 1 in a plate of 4 by 4 by 1 with a hole of radius 1. STEP files;"
