@@ -49,17 +49,12 @@ std::vector<MeshField> fields_to_carry(Session& session, const TetMesh& mesh) {
     throw OptionError("--carry: no output holds fields; write .vtu, .vtk, .msh, .med, .exo, .cgns or .xdmf");
   }
   // What was not asked for is no reason to fail.
-  if (is_default && (mesh.order() > 2 || (mesh.order() == 2 && !a.options.carry.quadratic_nodes))) return {};
-  try {
-    FieldsOfFile found =
-        read_fields(a.input.string(), mesh, is_default ? std::vector<std::string>{} : a.carry, session.context());
-    session.say_notes("fields", found.notes);
-    return std::move(found.fields);
-  } catch (const InputError& error) {
-    if (!is_default) throw;
-    session.say_notes("fields", {fmt::format("no field goes along: {}", error.what())});
-    return {};
-  }
+  if (is_default)
+    return mesh.order() == 1 || (mesh.order() == 2 && a.options.carry.quadratic_nodes) ? all_fields(session, mesh)
+                                                                                       : std::vector<MeshField>{};
+  FieldsOfFile found = read_fields(a.input.string(), mesh, a.carry, session.context());
+  session.say_notes("fields", found.notes);
+  return std::move(found.fields);
 }
 
 std::vector<MeshField> all_fields(Session& session, const TetMesh& mesh) {
