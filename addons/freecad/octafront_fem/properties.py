@@ -22,7 +22,24 @@ PROPERTIES = [
 ]
 
 
-class MeshOctafront:
+class Unsaved:
+    """What FreeCAD writes nothing of into files, but for its properties."""
+
+    # FreeCAD 0.20 asks for the first two, newer ones for the others.
+    def __getstate__(self):
+        return None
+
+    def __setstate__(self, state):
+        return None
+
+    def dumps(self):
+        return None
+
+    def loads(self, state):
+        return None
+
+
+class MeshOctafront(Unsaved):
     """What FreeCAD asks of an object that is told by Python."""
 
     Type = "Fem::FemMeshOctafront"
@@ -44,19 +61,6 @@ class MeshOctafront:
 
     def onDocumentRestored(self, obj):
         self.add_properties(obj)
-
-    # FreeCAD 0.20 asks for the first two, newer ones for the others.
-    def __getstate__(self):
-        return None
-
-    def __setstate__(self, state):
-        return None
-
-    def dumps(self):
-        return None
-
-    def loads(self, state):
-        return None
 
 
 def make_mesh(part, name="MeshOctafront", *, size=0.0, elements=0, order="2nd", preset="standard"):

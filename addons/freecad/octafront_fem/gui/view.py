@@ -3,10 +3,12 @@ import pathlib
 
 import FreeCADGui
 
+from ..properties import Unsaved
+
 ICON = str(pathlib.Path(__file__).resolve().parents[2] / "resources" / "octafront.svg")
 
 
-class ViewOfMesh:
+class ViewOfMesh(Unsaved):
     def __init__(self, view):
         view.Proxy = self
 
@@ -32,15 +34,3 @@ class ViewOfMesh:
     def claimChildren(self):
         mesh = self.Object
         return mesh.MeshRegionList + mesh.MeshGroupList + mesh.MeshBoundaryLayerList
-
-    def __getstate__(self):
-        return None
-
-    def __setstate__(self, state):
-        return None
-
-    def dumps(self):
-        return None
-
-    def loads(self, state):
-        return None
