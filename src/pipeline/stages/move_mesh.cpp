@@ -12,7 +12,6 @@
 #include "base/geometry/measures.h"
 #include "base/geometry/predicates.h"
 #include "base/geometry/self_intersection.h"
-#include "base/labels/labels.h"
 #include "base/mesh/periodic_nodes.h"
 #include "pipeline/stages/domain_of_mesh.h"
 #include "pipeline/stages/harmonic_inside.h"
