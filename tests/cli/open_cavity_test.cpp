@@ -2,6 +2,8 @@
 
 #include <octafront/octafront.h>
 
+#include "support/temporary_folder.h"
+
 #include <filesystem>
 #include <string>
 
@@ -14,7 +16,7 @@ TEST(OpenCavity, IsWrittenBesideTheOutputWithASentenceHowToReportIt) {
   const SurfaceMesh cavity{
       {{0, 0, 0}, {1, 0, 0}, {0, 1, 0}, {0, 0, 0.1}}, {{0, 2, 1}, {0, 1, 3}, {1, 2, 3}, {2, 0, 3}}, {}, {}, {}};
   const OpenCavityError error("a cavity of 4 faces near (0, 0, 0) could not be filled", cavity);
-  const auto folder = std::filesystem::temp_directory_path();
+  const testing::TemporaryFolder folder;
   const MeshingError told = with_cavity_written(error, folder / "octafront_open_cavity_test.vtu");
 
   const auto file = folder / "octafront_open_cavity_test.cavity.off";
@@ -25,7 +27,6 @@ TEST(OpenCavity, IsWrittenBesideTheOutputWithASentenceHowToReportIt) {
   EXPECT_NE(message.find(error.what()), std::string::npos);
   EXPECT_NE(message.find(file.string()), std::string::npos);
   EXPECT_NE(message.find("please report it with that file"), std::string::npos);
-  std::filesystem::remove(file);
 }
 
 TEST(OpenCavity, ThatCannotBeWrittenSaysSo) {

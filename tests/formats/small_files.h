@@ -6,6 +6,7 @@
 #include <octafront/tet_mesh.h>
 
 #include "formats/files/formats.h"
+#include "support/temporary_folder.h"
 
 #include <filesystem>
 #include <functional>
@@ -29,20 +30,6 @@ std::vector<SmallFile> small_mesh_files();
 std::vector<SmallFile> more_mesh_files();
 
 TetMesh two_tets();
-
-/// A folder of its own, removed with all that is in it.
-class TemporaryFolder {
- public:
-  TemporaryFolder();
-  ~TemporaryFolder();
-  TemporaryFolder(const TemporaryFolder&) = delete;
-  TemporaryFolder& operator=(const TemporaryFolder&) = delete;
-  std::filesystem::path operator/(const std::string& name) const { return path_ / name; }
-  const std::filesystem::path& path() const { return path_; }
-
- private:
-  std::filesystem::path path_;
-};
 
 std::string file_bytes(const std::filesystem::path& file);
 void write_bytes(const std::filesystem::path& file, std::string_view bytes);

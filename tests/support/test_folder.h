@@ -2,6 +2,8 @@
 
 #include <octafront/io.h>
 
+#include "support/temporary_folder.h"
+
 #include <filesystem>
 #include <string>
 
@@ -12,14 +14,8 @@ namespace octafront::testing {
 /// A folder for the files of one test, which runs in it.
 class InItsFolder : public ::testing::Test {
  protected:
-  void SetUp() override {
-    std::filesystem::create_directories(folder_);
-    std::filesystem::current_path(folder_);
-  }
-  void TearDown() override {
-    std::filesystem::current_path(before_);
-    std::filesystem::remove_all(folder_);
-  }
+  void SetUp() override { std::filesystem::current_path(folder_.path()); }
+  void TearDown() override { std::filesystem::current_path(before_); }
 
   std::string file(const std::string& name, const SurfaceMesh& surface) const {
     const std::string path = folder_ / name;
@@ -27,8 +23,7 @@ class InItsFolder : public ::testing::Test {
     return path;
   }
 
-  const std::filesystem::path folder_ =
-      std::filesystem::path(::testing::TempDir()) / ::testing::UnitTest::GetInstance()->current_test_info()->name();
+  const TemporaryFolder folder_;
 
  private:
   const std::filesystem::path before_ = std::filesystem::current_path();

@@ -1,5 +1,7 @@
 #include <octafront/limits.h>
 
+#include "support/temporary_folder.h"
+
 #include <filesystem>
 #include <fstream>
 
@@ -13,16 +15,15 @@ namespace fs = std::filesystem;
 class LiesIn : public ::testing::Test {
  protected:
   void SetUp() override {
-    fs::remove_all(all_);
     fs::create_directories(all_ / "in" / "below");
     fs::create_directories(all_ / "inside");
     std::ofstream(all_ / "in" / "a.stl") << "a";
     std::ofstream(all_ / "out.stl") << "a";
   }
-  void TearDown() override { fs::remove_all(all_); }
   bool lies(const fs::path& file) const { return lies_in(file.string(), {(all_ / "in").string()}); }
 
-  const fs::path all_ = fs::path(::testing::TempDir()) / "lies_in_test";
+  const testing::TemporaryFolder folder_;
+  const fs::path& all_ = folder_.path();
 };
 
 TEST_F(LiesIn, WhatIsInAFolderOrBelow) {

@@ -6,6 +6,7 @@
 #include <octafront/validity.h>
 
 #include "shapes.h"
+#include "support/temporary_folder.h"
 
 #include <cmath>
 #include <cstdlib>
@@ -20,11 +21,7 @@ namespace {
 
 class CadMesh : public ::testing::Test {
  protected:
-  void SetUp() override {
-    std::filesystem::create_directories(folder_);
-    setenv("OCTAFRONT_CAD", OCTAFRONT_CAD_PROGRAM, 1);
-  }
-  void TearDown() override { std::filesystem::remove_all(folder_); }
+  void SetUp() override { setenv("OCTAFRONT_CAD", OCTAFRONT_CAD_PROGRAM, 1); }
 
   Domain opened(const std::string& shape, const std::string& ending, IntakeOptions options = {}) const {
     const std::string file = folder_ / (shape + ending);
@@ -41,8 +38,7 @@ class CadMesh : public ::testing::Test {
   }
 
   static constexpr double kSize = 1.5;
-  const std::filesystem::path folder_ =
-      std::filesystem::path(::testing::TempDir()) / ::testing::UnitTest::GetInstance()->current_test_info()->name();
+  const testing::TemporaryFolder folder_;
 };
 
 TEST_F(CadMesh, VerticesOfASphereLieOnIt) {

@@ -1,6 +1,7 @@
 #include "compressed.h"
 #include "reader.h"
 #include "shapes.h"
+#include "support/temporary_folder.h"
 
 #include <algorithm>
 #include <cmath>
@@ -26,9 +27,6 @@ const std::string kFine = "triangulate 0.01 0.25\n";
 
 class CadProgram : public ::testing::Test {
  protected:
-  void SetUp() override { std::filesystem::create_directories(folder_); }
-  void TearDown() override { std::filesystem::remove_all(folder_); }
-
   std::string written(const std::string& shape, const std::string& ending, const std::string& unit = "MM") const {
     const std::string file = folder_ / (shape + ending);
     write_shape(shape_named(shape), file, unit);
@@ -41,8 +39,7 @@ class CadProgram : public ::testing::Test {
     return answer.models.empty() ? CadModel{} : answer.models[0];
   }
 
-  const std::filesystem::path folder_ =
-      std::filesystem::path(::testing::TempDir()) / ::testing::UnitTest::GetInstance()->current_test_info()->name();
+  const testing::TemporaryFolder folder_;
 };
 
 double volume_behind(const CadModel& m, std::uint32_t solid) {

@@ -1,6 +1,7 @@
 #include <octafront/octafront_c.h>
 
 #include "support/named_surfaces.h"
+#include "support/temporary_folder.h"
 
 #include <cstring>
 #include <filesystem>
@@ -209,7 +210,8 @@ std::string bytes_of(const Job& job) {
 TEST(CApi, PicturesOfMeshesAndSurfacesAreBytesAndFiles) {
   const Surface cube = surface_of(testing::cube(1));
   const Mesh mesh = meshed(cube, R"({"size": 0.3})");
-  const std::string file = ::testing::TempDir() + "octafront_c_api_picture.png";
+  const testing::TemporaryFolder folder;
+  const std::string file = folder / "picture.png";
   const char* asked = R"({"width": 200, "height": 150, "cut": "x", "color": "size", "highlight": null})";
   const Job of_mesh(octafront_picture(mesh.get(), nullptr, asked, file.c_str(), 1));
   ASSERT_EQ(status_at_end(of_mesh), OCTAFRONT_DONE) << octafront_job_message(of_mesh.get());
@@ -217,7 +219,6 @@ TEST(CApi, PicturesOfMeshesAndSurfacesAreBytesAndFiles) {
   EXPECT_EQ(png.substr(0, 8), "\x89PNG\r\n\x1a\n");
   EXPECT_EQ(png.substr(16, 8), std::string("\0\0\0\xc8\0\0\0\x96", 8)) << "200 across, 150 down";
   EXPECT_EQ(std::filesystem::file_size(file), png.size());
-  std::filesystem::remove(file);
   EXPECT_NE(std::string(octafront_job_report(of_mesh.get())).find("\"width\":200"), std::string::npos)
       << octafront_job_report(of_mesh.get());
 

@@ -220,7 +220,7 @@ TEST_F(CadFiles, SizesAndOpeningsAreAlsoOfWhatSomethingIsLike) {
 }
 
 TEST_F(CadFiles, TheSamplesAreMadeAnew) {
-  ASSERT_EQ(std::system((OCTAFRONT_CAD_SAMPLES " " + folder_.string()).c_str()), 0);
+  ASSERT_EQ(std::system((OCTAFRONT_CAD_SAMPLES " " + folder_.path().string()).c_str()), 0);
   EXPECT_EQ(to_json(read_cad_info(folder_ / "bracket.step")), to_json(read_cad_info(kBracket)));
   EXPECT_EQ(to_json(read_cad_info(folder_ / "assembly.step")), to_json(read_cad_info(kAssembly)));
   EXPECT_EQ(to_json(read_cad_info(folder_ / "bend.step")), to_json(read_cad_info(OCTAFRONT_SAMPLES "/bend.step")));

@@ -9,6 +9,7 @@
 
 #include "base/dual/poly_faults.h"
 #include "support/named_surfaces.h"
+#include "support/temporary_folder.h"
 
 #include <algorithm>
 #include <cmath>
@@ -156,8 +157,7 @@ TEST(Tunnel, FirstHeightsFollowSpeedAndFluid) {
 
 TEST(Tunnel, ADeckIsACaseAndWritesOverNone) {
   namespace fs = std::filesystem;
-  const fs::path folder = fs::path(::testing::TempDir()) / "tunnel_case";
-  fs::remove_all(folder);
+  const testing::TemporaryFolder folder;
   fs::create_directories(folder / "constant");
   Options options;
   options.size.size = 0.5;
@@ -187,7 +187,6 @@ TEST(Tunnel, ADeckIsACaseAndWritesOverNone) {
   EXPECT_THROW(check_mesh_target(target, how), OutputError);
   how.deck = false;
   check_mesh_target(target, how);
-  fs::remove_all(folder);
 }
 
 TEST(Tunnel, PolyhedraSeeTheirFacesAtASharpEdge) {

@@ -3,6 +3,7 @@
 
 #include "support/mixed_mesh.h"
 #include "support/rich_mesh.h"
+#include "support/temporary_folder.h"
 
 #include <algorithm>
 #include <cmath>
@@ -45,14 +46,8 @@ bool is_known(std::string_view format) {
 class FieldFiles : public ::testing::Test {
  protected:
   std::string path_of(const std::string& name) const { return (folder_ / name).string(); }
-  void SetUp() override {
-    folder_ = std::filesystem::temp_directory_path() /
-              (std::string("octafront_fields_") + ::testing::UnitTest::GetInstance()->current_test_info()->name());
-    std::filesystem::create_directories(folder_);
-  }
-  void TearDown() override { std::filesystem::remove_all(folder_); }
 
-  std::filesystem::path folder_;
+  const testing::TemporaryFolder folder_;
 };
 
 TEST_F(FieldFiles, WhatIsWrittenIsReadAgain) {

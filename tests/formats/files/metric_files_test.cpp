@@ -1,6 +1,8 @@
 #include <octafront/error.h>
 #include <octafront/io.h>
 
+#include "support/temporary_folder.h"
+
 #include <cstring>
 #include <filesystem>
 #include <fstream>
@@ -21,7 +23,7 @@ const char* const kMetricSol =
 class MetricFiles : public ::testing::Test {
  protected:
   std::string write(const std::string& name, const std::string& text) const {
-    const std::string file = (std::filesystem::path(folder_) / name).string();
+    const std::string file = (folder_ / name).string();
     std::ofstream(file, std::ios::binary) << text;
     return file;
   }
@@ -33,14 +35,8 @@ class MetricFiles : public ::testing::Test {
     }
     return "taken";
   }
-  void SetUp() override {
-    folder_ = std::filesystem::temp_directory_path() /
-              (std::string("octafront_metric_") + ::testing::UnitTest::GetInstance()->current_test_info()->name());
-    std::filesystem::create_directories(folder_);
-  }
-  void TearDown() override { std::filesystem::remove_all(folder_); }
 
-  std::filesystem::path folder_;
+  const testing::TemporaryFolder folder_;
 };
 
 TEST_F(MetricFiles, SolutionsHaveTheLowerTriangleByRows) {

@@ -5,6 +5,7 @@
 #include "sizing/sources/kept_surface.h"
 #include "sizing/sources/make_size_field.h"
 #include "support/named_surfaces.h"
+#include "support/temporary_folder.h"
 
 #include <filesystem>
 #include <fstream>
@@ -18,15 +19,15 @@ namespace {
 /// A file in the folder of temporary files that goes away again.
 class TemporaryFile {
  public:
-  explicit TemporaryFile(const std::string& name) : path_(std::filesystem::path(::testing::TempDir()) / name) {}
+  explicit TemporaryFile(const std::string& name) : path_(folder_ / name) {}
   TemporaryFile(const std::string& name, const std::string& text) : TemporaryFile(name) {
     std::ofstream(path_, std::ios::binary) << text;
   }
-  ~TemporaryFile() { std::filesystem::remove(path_); }
   const std::filesystem::path& path() const { return path_; }
 
  private:
-  std::filesystem::path path_;
+  const testing::TemporaryFolder folder_;
+  const std::filesystem::path path_;
 };
 
 SizeField make(const SurfaceMesh& surface, const SizeOptions& options) {

@@ -3,6 +3,7 @@
 #include <octafront/image.h>
 
 #include "images/small_images.h"
+#include "support/temporary_folder.h"
 
 #include <algorithm>
 #include <filesystem>
@@ -27,14 +28,8 @@ class Volumes : public ::testing::Test {
  protected:
   void SetUp() override {
     if (!fs::exists(volume("Cranium.nrrd"))) GTEST_SKIP() << "bench/models/get-volumes.sh fetches the volumes";
-    folder_ = fs::temp_directory_path() / fmt::format("octafront-volumes-{}", ::getpid());
-    fs::create_directories(folder_);
   }
-  void TearDown() override {
-    std::error_code error;
-    fs::remove_all(folder_, error);
-  }
-  fs::path folder_;
+  const testing::TemporaryFolder folder_;
 };
 
 /// Turned about the patient's left-right axis by `tilt` degrees against the table: as a gantry does.
