@@ -5,7 +5,7 @@ volumes by quadrature, groups with their sizes, and areas or volumes.
     judges.py FOLDER [FORMAT ...]
 
 Judges: gmsh (msh, msh22, unv, nastran, medit), meshio (abaqus, nastran, vtu, vtk, meditb, netgen, xdmf, tetgen, exodus; cells: the
-tetrahedra alone, in what it reads), VTK (vtu, vtk, exodus), CalculiX (abaqus), python3-med (med), h5py (xdmf, cgns),
+tetrahedra alone, in what it reads), VTK (vtu, vtk, exodus), CalculiX (abaqus), MFEM (mfem, $MFEM_DIR says where it was built), python3-med (med), h5py (xdmf, cgns),
 cgnscheck (cgns), checkMesh (openfoam), ideasUnvToFoam (unv), gmshToFoam (msh22 as text), and for what nobody in Debian
 reads (ansys, lsdyna, febio, su2), readers of their own in second_readers.py, written from the manuals.
 What is not installed is skipped, and said. Exit status 1 if any judge finds a difference.
@@ -124,6 +124,33 @@ def near(what, found, wanted, tolerance):
         raise Difference(f"{what}: {found:.15g}, not {wanted:.15g}")
 
 
+def cubic_map(p):
+    """The derivatives of write_samples' bent_cubically(); p: an array of shape (3, ...)."""
+    x, y, z = p
+    i = np.ones_like(x)
+    return np.array([[i, .008 * y * z, .004 * y * y], [-.002 * z, i, .009 * z * z - .002 * x], [.01 * x * y, .005 * x * x, i]])
+
+
+def measures_of_cube(n):
+    """Of [0, n]^3 under cubic_map(): volumes of its halves by x, and areas of its sides, by x, y, z, and of the plane between."""
+    at, weights = np.polynomial.legendre.leggauss(24)
+    u, w = n * (at + 1) / 2, n * weights / 2
+    volumes = []
+    for half in (0, 1):
+        grid = np.array(np.meshgrid(half * n / 2 + u / 2, u, u, indexing="ij"))
+        det = np.linalg.det(np.moveaxis(cubic_map(grid), (0, 1), (-2, -1)))
+        volumes.append(np.einsum("i,j,k,ijk", w / 2, w, w, det))
+    areas = []
+    for axis, place in ((0, 0), (0, n), (1, 0), (1, n), (2, 0), (2, n), (0, n / 2)):
+        a, b = np.meshgrid(u, u, indexing="ij")
+        point = np.insert(np.array([a, b]), axis, np.full_like(a, place), axis=0)
+        slopes = np.moveaxis(cubic_map(point), (0, 1), (-2, -1))
+        others = [k for k in range(3) if k != axis]
+        normal = np.cross(slopes[..., others[0]], slopes[..., others[1]])
+        areas.append(np.einsum("i,j,ij", w, w, np.linalg.norm(normal, axis=-1)))
+    return volumes, areas
+
+
 def underscored(name):
     return "".join(c if c.isalnum() or c in "_-" else "_" for c in name)
 
@@ -210,6 +237,64 @@ def judge_unv(folder, expected):
 
 def judge_medit(folder, expected):
     yield "gmsh", with_gmsh(folder / "medit.mesh", expected, {"region": "size", "patch": "size", "curve": "size"}, None, by_entity=True)
+
+
+# ---- MFEM
+
+def mfem_program(work, source=Path(__file__).parent / "mfem_judge.cpp"):
+    """Built against MFEM where it was built ($MFEM_DIR) or where the system has it."""
+    own, program = os.environ.get("MFEM_DIR"), Path(work) / "mfem_judge"
+    places = [f"-I{own}", f"-L{own}"] if own else []
+    done = subprocess.run(["g++", "-O1", "-std=c++17", *places[:1], source, "-o", program, *places[1:], "-lmfem", "-lrt"],
+                          capture_output=True, check=False)
+    if done.returncode != 0:
+        raise ImportError("no MFEM ($MFEM_DIR, or libmfem-dev)")
+    return program
+
+
+def with_mfem(file, *more):
+    with tempfile.TemporaryDirectory() as work:
+        done = subprocess.run([mfem_program(work), file, *more], capture_output=True, text=True, timeout=120)
+    if done.returncode != 0:
+        raise Difference(f"mfem_judge: {(done.stdout + done.stderr)[-800:]}")
+    read = json.loads(done.stdout)
+    if read["least_jacobian"] <= 0:
+        raise Difference(f"MFEM finds a Jacobian of {read['least_jacobian']}")
+    return read
+
+
+def judge_mfem(folder, expected):
+    read = with_mfem(folder / "mfem.msh")
+    if expected is None:
+        yield "MFEM", of_cube(read, {"third": 3, "fourth": 4}[folder.name])
+        return
+    same("nodes", read["nodes"], expected["nodes"])
+    same("elements", read["elements"], expected["tets"])
+    near("volume", read["volume"], expected["volume"], 1e-13)
+    checked = 0
+    for part in expected["parts"]:
+        if part["origin"] not in ("region", "patch"):
+            continue
+        is_region = part["origin"] == "region"
+        if part["named"]:
+            same(f"numbers of {part['name']}", read["names" if is_region else "boundary_names"][part["name"]], [part["number"] + 1])
+        found = read["regions" if is_region else "patches"][str(part["number"] + 1)]
+        same(f"size of {part['name']}", found["size"], part["size"])
+        near(f"measure of {part['name']}", found["measure" if is_region else "vector"], part["measure"], 1e-13)
+        checked += 1
+    yield "MFEM", checked
+
+
+def of_cube(read, order, n=4):
+    same("order", read["order"], order)
+    same("nodes", read["nodes"], (n * order + 1) ** 3)
+    same("elements", read["elements"], 6 * n ** 3)
+    volumes, areas = measures_of_cube(n)
+    for number, volume in enumerate(volumes, 1):
+        near(f"volume of region {number}", read["regions"][str(number)]["measure"], volume, 1e-13)
+    for number, area in enumerate(areas, 1):
+        near(f"area of patch {number}", read["patches"][str(number)]["measure"], area, 1e-12)
+    return len(volumes) + len(areas)
 
 
 # ---- meshio
@@ -617,6 +702,7 @@ def judge_cells(folder, expected):
         yield f"meshio ({name})", from_meshio(mesh)[0].compare(expected, {})
 
 
+OF_HIGH_ORDER = ("mfem",)
 JUDGES = {name[6:]: judge for name, judge in globals().items() if name.startswith("judge_")}
 
 
@@ -624,8 +710,11 @@ def main():
     folder = Path(sys.argv[1])
     failed = 0
     for name in sys.argv[2:] or JUDGES:
-        for order in ("linear", "second", "linear_text", "second_text"):
-            expected = json.loads((folder / order / "expected.json").read_text())
+        for order in ("linear", "second", "third", "fourth", "linear_text", "second_text"):
+            if order in ("third", "fourth") and name not in OF_HIGH_ORDER:
+                continue
+            file = folder / order / "expected.json"
+            expected = json.loads(file.read_text()) if file.exists() else None
             if order.endswith("_text") and not any((folder / order).glob(name + ".*")):
                 continue
             if not any((folder / order).glob(name + ".*")) and name not in ("openfoam", "cells"):

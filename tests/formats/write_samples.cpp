@@ -2,7 +2,8 @@
 //   write_samples FOLDER
 // leaves FOLDER/linear/..., FOLDER/second/..., what is text or binary also as text in FOLDER/linear_text/..., the
 // tetrahedra alone in FOLDER/linear_cells/..., one with wedges and pyramids in FOLDER/mixed_linear/... and
-// FOLDER/mixed_second/..., and in each expected.json: what a judge must find; with fields in FOLDER/linear_fields/...
+// FOLDER/mixed_second/..., and in each expected.json: what a judge must find; of orders 3 and 4 in FOLDER/third/... and
+// FOLDER/fourth/..., bent by a map that judges know; with fields in FOLDER/linear_fields/...
 // and so on, for field_judges.py.
 
 #include <octafront/field_files.h>
@@ -16,6 +17,7 @@
 #include <cmath>
 #include <filesystem>
 #include <string>
+#include <utility>
 
 #include <fmt/core.h>
 
@@ -28,6 +30,13 @@ namespace fs = std::filesystem;
 TetMesh bent(TetMesh mesh) {
   for (Vec3& p : mesh.points)
     p = p + Vec3{0.08 * std::sin(1.1 * p.y + 0.3), 0.07 * std::cos(1.3 * p.z), 0.09 * std::sin(0.9 * p.x + p.y)};
+  return mesh;
+}
+
+/// Bends a mesh of order 3 or 4 by polynomials of degree 3, which its elements hold exactly: the same in judges.py.
+TetMesh bent_cubically(TetMesh mesh) {
+  for (Vec3& p : mesh.points)
+    p = p + Vec3{0.004 * p.y * p.y * p.z, 0.003 * p.z * p.z * p.z - 0.002 * p.x * p.z, 0.005 * p.x * p.x * p.y};
   return mesh;
 }
 
@@ -187,7 +196,8 @@ template <class Wanted>
 void write_those(const fs::path& folder, const TetMesh& mesh, WriteOptions options, const Wanted& wanted,
                  const std::vector<MeshField>& fields = {}) {
   fs::create_directories(folder);
-  write_text(folder / "expected.json", mesh.wide_cells.empty() ? expected(mesh) : expected_mixed(mesh));
+  if (mesh.high_order == 0)
+    write_text(folder / "expected.json", mesh.wide_cells.empty() ? expected(mesh) : expected_mixed(mesh));
   for (const FormatInfo& info : known_formats()) {
     if (!info.writes_mesh || !wanted(info)) continue;
     const std::string ending(info.endings.substr(0, info.endings.find(' ')));
@@ -243,6 +253,9 @@ int main(int argc, char** argv) {
   const TetMesh linear = octafront::testing::rich_mesh(4);
   write_all(folder + "/linear", bent(linear));
   write_all(folder + "/second", bent(octafront::testing::with_mid_nodes(linear)));
+  for (const auto& [name, order] : {std::pair{"/third", 3}, std::pair{"/fourth", 4}})
+    write_those(folder + name, bent_cubically(octafront::testing::with_high_nodes(linear, order)), {},
+                [](const FormatInfo& info) { return info.holds.high_order && info.reads_mesh; });
   write_parts(folder + "/linear", bent(linear));
   write_parts(folder + "/second", bent(octafront::testing::with_mid_nodes(linear)));
   const TetMesh mixed = octafront::testing::mixed_mesh(3);

@@ -114,6 +114,12 @@ class MeshParts {
     if (order_ > 2) return high_.of_tet(t, k);
     return k < 4 ? mesh_.tets[t][k] : mesh_.mid_nodes[t][kMids[k - 4]];
   }
+  /// The same in the order of tet_lattice().
+  VertexIndex lattice_node(std::size_t t, std::size_t k) const {
+    return k < 4         ? mesh_.tets[t][k]
+           : order_ == 2 ? mesh_.mid_nodes[t][k - 4]
+                         : mesh_.high_nodes[t * (nodes_per_tet() - 4) + k - 4];
+  }
   VertexIndex face_node(std::size_t f, std::size_t k) const {
     const Triangle& t = face(f);
     if (order_ > 2) return high_.of_face(sides()[f], t, k);
