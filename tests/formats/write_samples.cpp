@@ -126,16 +126,18 @@ std::string expected(const TetMesh& mesh) {
   constexpr std::array kOrigins{"region", "patch", "curve", "set"};
   constexpr std::array kKinds{"nodes", "edges", "faces", "elements"};
   for (const io::Part& part : parts.parts()) {
-    double measure = 0;
+    double measure = 0, curved = 0;
     for (const std::uint32_t m : part.members) {
       if (part.kind == NamedSet::Kind::kElements) measure += volume(parts.tet_nodes(m, tet), mesh.points);
-      if (part.kind == NamedSet::Kind::kFaces) measure += length(vector_area(parts.face_nodes(m, face), mesh.points));
+      if (part.kind != NamedSet::Kind::kFaces) continue;
+      measure += length(vector_area(parts.face_nodes(m, face), mesh.points));
+      curved += area(parts.face_nodes(m, face), mesh.points);
     }
     out += fmt::format(
         "  {{\"origin\": \"{}\", \"kind\": \"{}\", \"name\": {}, \"named\": {}, \"number\": {}, \"size\": {}, "
-        "\"nodes\": {}, \"measure\": {:.17g}}}{}\n",
+        "\"nodes\": {}, \"measure\": {:.17g}, \"area\": {:.17g}}}{}\n",
         kOrigins[static_cast<std::size_t>(part.origin)], kKinds[static_cast<std::size_t>(part.kind)], quoted(part.name),
-        part.is_named, part.number, part.members.size(), parts.nodes_of(part).size(), measure,
+        part.is_named, part.number, part.members.size(), parts.nodes_of(part).size(), measure, curved,
         &part == &parts.parts().back() ? "" : ",");
   }
   return out + "]}\n";
