@@ -5,7 +5,7 @@ volumes by quadrature, groups with their sizes, and areas or volumes.
     judges.py FOLDER [FORMAT ...]
 
 Judges: gmsh (msh, msh22, unv, nastran, medit), meshio (abaqus, nastran, vtu, vtk, meditb, netgen, xdmf, tetgen, exodus; cells: the
-tetrahedra alone, in what it reads), VTK (vtu, vtk, exodus), CalculiX (abaqus), MFEM (mfem, $MFEM_DIR says where it was built), DOLFINx (xdmf, and msh22 of order 3), python3-med (med), h5py (xdmf, cgns),
+tetrahedra alone, in what it reads), VTK (vtu, vtk, exodus), CalculiX (abaqus), MFEM (mfem, $MFEM_DIR says where it was built), Netgen itself (netgen of orders 3 and 4, $NETGEN_DIR), DOLFINx (xdmf, and msh22 of order 3), python3-med (med), h5py (xdmf, cgns),
 cgnscheck (cgns), checkMesh (openfoam), ideasUnvToFoam (unv), gmshToFoam (msh22 as text), and for what nobody in Debian
 reads (ansys, lsdyna, febio, su2), readers of their own in second_readers.py, written from the manuals.
 What is not installed is skipped, and said. Exit status 1 if any judge finds a difference.
@@ -248,14 +248,7 @@ def judge_medit(folder, expected):
 
 def with_dolfinx(file):
     import dolfinx  # noqa: F401, else there is nothing to ask
-    program = Path(__file__).parent / "dolfinx_judge.py"
-    done = subprocess.run([sys.executable, program, file], capture_output=True, text=True, timeout=240)
-    if done.returncode != 0:
-        raise Difference(f"dolfinx_judge: {done.stderr[-800:]}")
-    read = json.loads(done.stdout)
-    if read["least_jacobian"] <= 0:
-        raise Difference(f"DOLFINx finds a Jacobian of {read['least_jacobian']}")
-    return read
+    return asked(sys.executable, "DOLFINx", Path(__file__).parent / "dolfinx_judge.py", file)
 
 
 # ---- MFEM
@@ -271,15 +264,35 @@ def mfem_program(work, source=Path(__file__).parent / "mfem_judge.cpp"):
     return program
 
 
+def asked(program, title, *arguments):
+    """What one of these programs prints."""
+    done = subprocess.run([program, *arguments], capture_output=True, text=True, timeout=240)
+    if done.returncode != 0:
+        raise Difference(f"{title}: {(done.stdout + done.stderr)[-800:]}")
+    read = json.loads(done.stdout[done.stdout.index("{"):])
+    if read["least_jacobian"] <= 0:
+        raise Difference(f"{title} finds a Jacobian of {read['least_jacobian']}")
+    return read
+
+
 def with_mfem(file, *more):
     with tempfile.TemporaryDirectory() as work:
-        done = subprocess.run([mfem_program(work), file, *more], capture_output=True, text=True, timeout=120)
-    if done.returncode != 0:
-        raise Difference(f"mfem_judge: {(done.stdout + done.stderr)[-800:]}")
-    read = json.loads(done.stdout)
-    if read["least_jacobian"] <= 0:
-        raise Difference(f"MFEM finds a Jacobian of {read['least_jacobian']}")
-    return read
+        return asked(mfem_program(work), "MFEM", file, *more)
+
+
+def with_netgen(file):
+    """By Netgen's sources of April 2026 or later ($NETGEN_DIR), built in their folder build without Python and graphics."""
+    own = Path(os.environ.get("NETGEN_DIR", "/nowhere"))
+    objects = [*(own / "build/CMakeFiles/nglib.dir").rglob("*.o")]
+    core = own / "build/libsrc/core"
+    if not objects:
+        raise ImportError("no Netgen ($NETGEN_DIR)")
+    with tempfile.TemporaryDirectory() as work:
+        program = Path(work) / "netgen_judge"
+        places = [f"-I{own / place}" for place in ("build", ".", "include", "libsrc", "libsrc/include")]
+        subprocess.run(["g++", "-O1", "-std=c++17", *places, Path(__file__).parent / "netgen_judge.cpp", "-o", program, *objects,
+                        f"-L{core}", f"-Wl,-rpath,{core}", "-lngcore", "-lz", "-lpthread"], check=True, capture_output=True)
+        return asked(program, "Netgen", file)
 
 
 def judge_mfem(folder, expected):
@@ -309,9 +322,9 @@ def by_number(read, expected):
     return len(parts)
 
 
-def of_cube(read, order, n=4):
+def of_cube(read, order, n=4, nodes=None):
     same("order", read["order"], order)
-    same("nodes", read["nodes"], (n * order + 1) ** 3)
+    same("nodes", read["nodes"], nodes or (n * order + 1) ** 3)
     same("elements", read["elements"], 6 * n ** 3)
     volumes, areas = measures_of_cube(n)
     for number, volume in enumerate(volumes, 1):
@@ -407,6 +420,9 @@ def judge_meditb(folder, expected):
 
 
 def judge_netgen(folder, expected):
+    if expected is None:
+        yield "Netgen", of_cube(with_netgen(folder / "netgen.vol"), ORDERS[folder.name], nodes=5 ** 3)
+        return
     mesh = with_meshio(folder / "netgen.vol")
     found, _ = from_meshio(mesh)
     parts_by_number(found, mesh, expected, "netgen:index")
@@ -727,7 +743,7 @@ def judge_cells(folder, expected):
         yield f"meshio ({name})", from_meshio(mesh)[0].compare(expected, {})
 
 
-OF_HIGH_ORDER = ("mfem", "msh22")
+OF_HIGH_ORDER = ("mfem", "msh22", "netgen")
 ORDERS = {"third": 3, "fourth": 4}
 JUDGES = {name[6:]: judge for name, judge in globals().items() if name.startswith("judge_")}
 

@@ -65,6 +65,8 @@ class MeshParts {
   const TetMesh& mesh() const { return mesh_; }
   /// Points that are to be written: the first ones of the mesh.
   std::size_t points() const { return points_; }
+  /// Of these the corners of tetrahedra, which come first where there are others.
+  std::size_t corner_points() const;
   std::size_t tets() const { return mesh_.tets.size(); }
   std::size_t faces() const { return hidden_.faces ? 0 : mesh_.boundary.size() + mesh_.interfaces.size(); }
   std::size_t edges() const { return hidden_.faces ? 0 : mesh_.curve_edges.size(); }

@@ -1,6 +1,5 @@
 #include "formats/parts/mfem_nodes.h"
 
-#include "base/core/groups.h"
 #include "base/geometry/curved_tet.h"
 #include "base/geometry/tet_lattice.h"
 #include "base/mesh/face_table.h"
@@ -8,62 +7,9 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <numeric>
-#include <utility>
 
 namespace octafront::io {
 namespace {
-
-struct EdgeUse {
-  VertexIndex high;
-  std::uint32_t edge;  ///< 6 * tet + place in kTetEdges
-  auto operator<=>(const EdgeUse&) const = default;
-};
-
-/// Per edge of each element the first of the list on the same vertices.
-std::vector<std::uint32_t> first_equal_edges(std::span<const Tet> tets, std::size_t vertices) {
-  Groups<EdgeUse, std::uint64_t> at_low(vertices, [&](const auto& add) {
-    for (TetIndex t = 0; t < tets.size(); ++t)
-      for (std::uint32_t e = 0; e < 6; ++e) {
-        const auto [low, high] = std::minmax(tets[t][static_cast<std::size_t>(kTetEdges[e][0])],
-                                             tets[t][static_cast<std::size_t>(kTetEdges[e][1])]);
-        add(low, EdgeUse{high, 6 * t + e});
-      }
-  });
-  std::vector<std::uint32_t> first(6 * tets.size());
-  for (std::size_t v = 0; v < vertices; ++v) {
-    const std::span<EdgeUse> uses = at_low[v];
-    std::ranges::sort(uses);
-    for (std::size_t i = 0; i < uses.size(); ++i) {
-      const bool again = i > 0 && uses[i].high == uses[i - 1].high;
-      first[uses[i].edge] = again ? first[uses[i - 1].edge] : uses[i].edge;
-    }
-  }
-  return first;
-}
-
-std::vector<std::uint32_t> first_equal_faces(std::span<const Tet> tets, std::size_t vertices) {
-  std::vector<std::uint32_t> first(4 * tets.size());
-  const FaceTable table(vertices, [&](const auto& add) {
-    for (TetIndex t = 0; t < tets.size(); ++t)
-      for (std::uint32_t f = 0; f < 4; ++f) add(face_of(tets[t], static_cast<int>(f)), 4 * t + f);
-  });
-  table.for_each_group([&](const Triangle&, std::span<const FaceTable::Entry> same) {
-    for (const FaceTable::Entry& entry : same) first[entry.face] = same.front().face;
-  });
-  return first;
-}
-
-/// Turns "the first of the list that is the same" into numbers that count through. Returns where each number first was.
-std::vector<std::uint32_t> count_through(std::vector<std::uint32_t>& first) {
-  std::vector<std::uint32_t> firsts;
-  for (std::uint32_t i = 0; i < first.size(); ++i) {
-    const bool is_new = first[i] == i;
-    if (is_new) firsts.push_back(i);
-    first[i] = is_new ? static_cast<std::uint32_t>(firsts.size() - 1) : first[first[i]];
-  }
-  return firsts;
-}
 
 /// Places from 0 to 1, order + 1 of them.
 std::vector<double> places_in_line(MfemPoints points, int order) {
@@ -92,8 +38,6 @@ std::vector<double> places_in_line(MfemPoints points, int order) {
   std::ranges::sort(all);
   return all;
 }
-
-using SquareMatrix = std::vector<std::vector<double>>;
 
 /// Values of our nodes' polynomials (columns) at the places of nodes of that kind (rows).
 SquareMatrix at_nodes(MfemPoints points, int order) {
@@ -137,36 +81,15 @@ SquareMatrix of_bernstein(int order) {
   return rows;
 }
 
-/// Gauss and Jordan's elimination, with the largest of a column as pivot.
-SquareMatrix inverse_of(SquareMatrix a) {
-  const std::size_t n = a.size();
-  for (std::size_t i = 0; i < n; ++i) a[i].resize(2 * n), a[i][n + i] = 1;
-  for (std::size_t k = 0; k < n; ++k) {
-    const auto pivot = std::max_element(a.begin() + static_cast<std::ptrdiff_t>(k), a.end(),
-                                        [&](const auto& x, const auto& y) { return std::abs(x[k]) < std::abs(y[k]); });
-    std::swap(*pivot, a[k]);
-    const double by = a[k][k];
-    for (double& x : a[k]) x /= by;
-    for (std::size_t i = 0; i < n; ++i) {
-      const double times = a[i][k];
-      if (i == k || times == 0) continue;
-      for (std::size_t j = k; j < 2 * n; ++j) a[i][j] -= times * a[k][j];
-    }
-  }
-  for (auto& row : a) row.erase(row.begin(), row.begin() + static_cast<std::ptrdiff_t>(n));
-  return a;
-}
-
 }  // namespace
 
 MfemNumbering::MfemNumbering(std::span<const Tet> tets, std::size_t vertices, int order)
     : tets_(tets), vertices_(vertices), order_(order), size_(vertices) {
   if (order < 2) return;
-  edge_ = first_equal_edges(tets, vertices);
-  in_edges_ = vertices + count_through(edge_).size() * nodes_in_edge(order);
-  face_ = first_equal_faces(tets, vertices);
-  first_ = count_through(face_);
-  in_faces_ = in_edges_ + first_.size() * nodes_in_face(order);
+  edges_ = edges_of_tets(tets, vertices, PartOrder::kAsNamed);
+  in_edges_ = vertices + edges_.first.size() * nodes_in_edge(order);
+  faces_ = faces_of_tets(tets, vertices, PartOrder::kAsNamed);
+  in_faces_ = in_edges_ + faces_.first.size() * nodes_in_face(order);
   size_ = in_faces_ + tets.size() * nodes_in_tet(order);
 }
 
@@ -186,12 +109,12 @@ VertexIndex MfemNumbering::in_edge(TetIndex t, std::size_t edge, std::size_t k) 
   const auto& [a, b] = kTetEdges[edge];
   const bool ascends = tets_[t][static_cast<std::size_t>(a)] < tets_[t][static_cast<std::size_t>(b)];
   const std::size_t each = nodes_in_edge(order_), at = ascends ? k : each - 1 - k;
-  return static_cast<VertexIndex>(vertices_ + edge_[6 * std::size_t{t} + edge] * each + at);
+  return static_cast<VertexIndex>(vertices_ + edges_.of[6 * std::size_t{t} + edge] * each + at);
 }
 
 VertexIndex MfemNumbering::in_face(TetIndex t, std::size_t face, std::size_t k) const {
   const std::size_t each = nodes_in_face(order_);
-  const std::uint32_t number = face_[4 * std::size_t{t} + face], first = first_[number];
+  const std::uint32_t number = faces_.of[4 * std::size_t{t} + face], first = faces_.first[number];
   std::size_t at = k;
   if (each > 1) {
     const Triangle as_named = face_of(tets_[first / 4], static_cast<int>(first % 4));

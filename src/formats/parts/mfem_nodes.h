@@ -4,6 +4,8 @@
 
 #include <octafront/tet_mesh.h>
 
+#include "formats/parts/tet_parts.h"
+
 #include <cstddef>
 #include <cstdint>
 #include <span>
@@ -32,8 +34,7 @@ class MfemNumbering {
   std::size_t vertices_, in_edges_ = 0, in_faces_ = 0;  ///< where the numbers of nodes in edges and faces end
   int order_;
   std::size_t size_;
-  std::vector<std::uint32_t> edge_, face_;  ///< per edge and face of each element its number
-  std::vector<std::uint32_t> first_;        ///< per face the first half-face that names it
+  NumberedParts edges_, faces_;
 };
 
 /// Kinds of nodes in one direction, by MFEM's letters.

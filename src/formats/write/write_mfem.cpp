@@ -99,9 +99,7 @@ class MfemWriter {
   }
 
   void write_nodes() {
-    std::size_t corners = 0;  // all other nodes come behind
-    for (const Tet& t : mesh_.mesh().tets)
-      for (const VertexIndex v : t) corners = std::max(corners, v + std::size_t{1});
+    const std::size_t corners = mesh_.corner_points();
     out_.line(
         "\nvertices\n{}\n\nnodes\nFiniteElementSpace\nFiniteElementCollection: H1{}_3D_P{}\nVDim: 3\nOrdering: 1\n",
         corners, mesh_.order() == 2 ? "" : "@U", mesh_.order());
