@@ -52,6 +52,10 @@ class Netgen {
         for_each(section, 12, [this] { read_volume_element(); });
       } else if (section == "edgesegmentsgi2") {
         for_each(section, 8, [this] { read_segment(); });
+      } else if (section == "edgesegmentsgi3") {
+        for_each(section, 8, [this] { read_segment_of_2026(); });
+      } else if (section == "edgedescriptors") {
+        for_each(section, 8, [this] { read_edge_descriptor(); });
       } else if (section == "points") {
         for_each(section, 6, [this] {
           const double x = scan_.number("a coordinate"), y = scan_.number("a coordinate"),
@@ -70,6 +74,7 @@ class Netgen {
     }
     if (!ended) scan_.fail_expected("\"endmesh\"");
     check_indices();
+    number_edges_by_descriptors();
     if (curves_) take_curves();
     return std::move(raw_);
   }
@@ -134,6 +139,32 @@ class Netgen {
     for (int i = 0; i < 4; ++i) scan_.integer("a number of a segment");
     raw_.edges.push_back({a, b});
     raw_.edge_ref.push_back(scan_.integer("the number of an edge"));
+  }
+
+  /// Since April 2026: its last number is that of a descriptor, from 0 on.
+  void read_segment_of_2026() {
+    const VertexIndex a = vertex(), b = vertex();
+    scan_.integer("a triangle"), scan_.integer("a triangle");
+    scan_.number("a distance"), scan_.number("a distance");
+    raw_.edges.push_back({a, b});
+    raw_.edge_ref.push_back(scan_.integer("the number of a descriptor"));
+    has_descriptors_ = true;
+  }
+
+  /// The number of an edge, seven more, its name.
+  void read_edge_descriptor() {
+    descriptors_.push_back(scan_.integer("the number of an edge"));
+    std::string_view name;
+    for (int word = 0; word < 8 && !scan_.at_line_end(); ++word) name = scan_.word();
+    if (!name.empty() && name != "default") raw_.curve_names.try_emplace(descriptors_.back(), name);
+  }
+
+  void number_edges_by_descriptors() {
+    if (!has_descriptors_) return;
+    for (std::int64_t& ref : raw_.edge_ref) {
+      const bool is_known = ref >= 0 && ref < static_cast<std::int64_t>(descriptors_.size());
+      ref = is_known ? descriptors_[static_cast<std::size_t>(ref)] : ref + 1;
+    }
   }
 
   void read_names(std::string_view section, std::map<std::int64_t, std::string>& names) {
@@ -260,6 +291,8 @@ class Netgen {
   Scanner scan_;
   RawMesh raw_;
   std::optional<CurvesOfFile> curves_;
+  std::vector<std::int64_t> descriptors_;  ///< the number of the edge of each
+  bool has_descriptors_ = false;           ///< segments tell one
 };
 
 }  // namespace

@@ -68,6 +68,19 @@ TEST(ReadNetgen, TakesElementsAsStraightWhereCurvesAreNotKnown) {
   }
 }
 
+TEST(ReadNetgen, TakesEdgesByTheirDescriptors) {
+  std::string text = with(saved_by_netgen(), "edgesegmentsgi3\n0\n",
+                          "edgesegmentsgi3\n3\n1 2 -1 -1 0 0 0\n2 3 -1 -1 0 0 1\n3 4 -1 -1 0 .5 2\n");
+  text = with(text, "\nendmesh",
+              "\nedgedescriptors\n3\n2 0 1 0.0 0.0 -1 0 -1 rim\n1 0 1 0.0 0.0 -1 0 -1 default\n2 0 1 0.0 0.0 -1 0 -1 "
+              "rim\n\nendmesh");
+  const TetMesh mesh = netgen_file(text).mesh;
+  EXPECT_EQ(mesh.curve_edges.size(), 3U);
+  EXPECT_EQ(mesh.curve, (std::vector<std::uint32_t>{1, 0, 1}));
+  EXPECT_EQ(mesh.curve_names, (std::vector<std::string>{"", "rim"}));
+  EXPECT_EQ(mesh.order(), 3);
+}
+
 TEST(ReadNetgen, RefusesCurvesThatEnd) {
   const std::string text = saved_by_netgen();
   const auto refused = [](const std::string& damaged) { return input_error([&] { netgen_file(damaged); }); };
