@@ -119,7 +119,7 @@ class NetgenWriter {
     write_list(curves.edges.coefficients), write_list(curves.faces.coefficients);
     out_.line("0\n{}\nf\nt", mesh_.order());  // no weights; the order; not rational, but of high order
     output_.note(
-        "orders 3 and 4 are read by Netgen and NGSolve from April 2026 on; older ones take elements as linear");
+        "orders 3 and 4 are read by Netgen, and so by NGSolve, from April 2026 on; older ones take elements as linear");
     if (mesh_.order() == 4) note_inner_nodes(curves);
   }
 
