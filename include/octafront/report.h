@@ -49,7 +49,7 @@ struct SizeSummary {
 /// One region of a mesh.
 struct RegionSummary {
   std::string name;          ///< may be empty
-  double volume = 0;         ///< input unit cubed; of curved elements as they are curved, where `true_volume` is known
+  double volume = 0;         ///< input unit cubed; of curved elements as they are curved
   double layers_volume = 0;  ///< of the boundary layers in it, which are a region of their own
   double input_volume = 0;   ///< of the input's region of this name; 0: not known
   double true_volume = 0;    ///< of the CAD solid; 0: not known

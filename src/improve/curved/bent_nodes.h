@@ -2,8 +2,8 @@
 
 #include "improve/curved/bends.h"
 #include "improve/curved/easing.h"
-#include "improve/curved/high_nodes.h"
 #include "improve/curved/moving_nodes.h"
+#include "improve/curved/node_numbers.h"
 
 #include <cmath>
 #include <cstdint>

@@ -11,6 +11,10 @@ FaceNodes::FaceNodes(const TetMesh& mesh) : mesh_(mesh), faces_(faces_of(mesh)),
     for (const std::uint32_t f : faces_.of_tet[t]) side_[f] = t;
 }
 
+bool FaceNodes::has(const Triangle& face) const {
+  return std::ranges::binary_search(faces_.corners, face_key(face));
+}
+
 VertexIndex FaceNodes::node(const Triangle& face, const Weights& weights) const {
   const auto f = std::ranges::lower_bound(faces_.corners, face_key(face)) - faces_.corners.begin();
   const TetIndex t = side_[static_cast<std::size_t>(f)];

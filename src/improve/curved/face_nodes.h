@@ -16,6 +16,7 @@ class FaceNodes {
   /// The mesh must outlive this.
   explicit FaceNodes(const TetMesh& mesh);
 
+  bool has(const Triangle& face) const;
   /// The node of a face whose barycentric coordinates are these over the order, in the order of its corners.
   VertexIndex node(const Triangle& face, const Weights& weights) const;
 

@@ -14,10 +14,11 @@
 namespace octafront::curved {
 
 /// Gives a linear mesh the nodes of order 3 or 4: those of the boundary by `bends`, which were found for that order, as
-/// far as every element stays valid; what lies over others goes along (`below` as in curved.h). First inner nodes move
-/// so that poor elements get better; where even then the least coefficient of a Jacobian is less than a tenth of the
-/// straight element's, or it is not proven positive, the edge or face of it that bends most goes halfway back, and
-/// after eight times is straight. Counts edges and faces.
+/// far as every element stays valid; what lies over others goes along (`below` as in curved.h). First nodes move so
+/// that poor elements get better (moving_nodes.h); where even then the least coefficient of a Jacobian is less than a
+/// tenth of the straight element's, or it is not proven positive, the edge or face of it that bends most goes halfway
+/// back, and after eight times altogether: to the straight one, of order 4 to where order 3 has it. Counts edges and
+/// faces.
 void add_high_order(TetMesh& mesh, int order, std::span<const VertexIndex> below, Bends bends,
                     SecondOrderSummary& summary, const RunContext& context);
 

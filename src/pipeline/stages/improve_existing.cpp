@@ -163,8 +163,6 @@ Improved improve_existing(const TetMesh& mesh, const Options& options, const Sur
   if (mesh.order() > options.order)
     run.report.stages.back().notes.emplace_back(
         fmt::format("nodes behind the corners are left out; `order` {} keeps curved walls", mesh.order()));
-  if (options.order > 2 && !mesh.periodic_nodes.empty())
-    throw OptionError("`order` 3 and 4 are not for periodic meshes that are improved: take 2, or mesh anew");
   result.before = summarize_quality(mesh);
   run.report.input_volume = options.order > 1 ? curved_volume(mesh) : enclosed_volume(boundary_of(mesh));
   refuse_sizes_required(options.require, "improvement keeps the sizes that there are");

@@ -2,93 +2,69 @@
 
 #include <octafront/tet_mesh.h>
 
-#include "base/geometry/quadratic_tet.h"
-#include "base/mesh/edge_nodes.h"
-#include "base/mesh/periodic_cell.h"
 #include "base/mesh/periodic_nodes.h"
+#include "improve/curved/face_nodes.h"
+#include "pipeline/stages/paired_nodes.h"
 
 #include <algorithm>
 #include <map>
 #include <set>
+#include <span>
 
 namespace octafront {
 
 namespace {
 
-class MidPairs {
+/// Links between the nodes behind corners of faces whose corners are copies.
+class LinksOfPairs {
  public:
-  explicit MidPairs(TetMesh& mesh) : mesh_(mesh), node_of_(mesh) { find(); }
+  explicit LinksOfPairs(const TetMesh& mesh) : mesh_(mesh), nodes_(mesh), original_(mesh.periods.size()) {
+    for (const auto& [period, copy, original] : mesh.periodic_nodes) original_[period][copy] = original;
+  }
 
-  void run() {
-    follow();
-    while (straighten_bad()) follow();
-    for (const Pair& p : pairs_) mesh_.periodic_nodes.push_back({p.period, p.copy, p.original});
-    std::sort(mesh_.periodic_nodes.begin(), mesh_.periodic_nodes.end());
+  std::vector<NodeLink> run() const {
+    std::vector<NodeLink> links;
+    std::set<std::array<std::uint32_t, 2>> known;
+    for (std::uint32_t k = 0; k < original_.size(); ++k)
+      for (const Triangle& copy : mesh_.boundary) {
+        const Triangle original = original_of(k, copy);
+        if (original == copy) continue;
+        curved::visit_nodes_behind_corners(mesh_.order(), [&](const curved::FaceNodes::Weights& weights) {
+          const NodeLink link{k, nodes_.node(copy, weights), nodes_.node(original, weights)};
+          if (link.copy != link.original && known.insert({k, link.copy}).second) links.push_back(link);
+        });
+      }
+    return links;
   }
 
  private:
-  struct Pair {
-    std::uint32_t period;
-    VertexIndex copy, original;
-    Edge of_copy, of_original;
-  };
-
-  void find() {
-    std::vector<std::map<VertexIndex, VertexIndex>> original(mesh_.periods.size());
-    for (const auto& [period, copy, of] : mesh_.periodic_nodes) original[period][copy] = of;
-    std::set<std::array<std::uint32_t, 2>> known;
-    for (std::uint32_t k = 0; k < original.size(); ++k)
-      for (const Triangle& t : mesh_.boundary) {
-        // Edges beside a face may lie between its vertices, too, without being copies of any.
-        Triangle of_t = t;
-        bool are_copies = true;
-        for (int i = 0; i < 3; ++i) {
-          const auto at = original[k].find(t[i]);
-          if (at != original[k].end())
-            of_t[i] = at->second;
-          else
-            are_copies = are_copies && is_own_copy(mesh_, k, t[i]);
-        }
-        if (!are_copies || of_t == t) continue;
-        for (int i = 0; i < 3; ++i) {
-          const VertexIndex a = t[i], b = t[(i + 1) % 3], c = of_t[i], d = of_t[(i + 1) % 3];
-          const VertexIndex copy = node_of_(a, b), of = node_of_(c, d);
-          if (copy != kNone && of != kNone && copy != of && known.insert({k, copy}).second)
-            pairs_.push_back({k, copy, of, {a, b}, {c, d}});
-        }
-      }
-  }
-
-  /// Copies of copies come there in as many rounds as there are periods.
-  void follow() {
-    for (std::size_t k = 0; k < mesh_.periods.size(); ++k)
-      for (const Pair& p : pairs_) mesh_.points[p.copy] = led_by_period(mesh_, p.period, mesh_.points[p.original]);
-  }
-
-  bool straighten_bad() {
-    std::vector<std::uint8_t> is_bad(mesh_.points.size(), 0);
-    for (TetIndex t = 0; t < mesh_.tets.size(); ++t) {
-      QuadraticTet nodes;
-      for (int i = 0; i < 4; ++i) nodes[i] = mesh_.points[mesh_.tets[t][i]];
-      for (int i = 0; i < 6; ++i) nodes[4 + i] = mesh_.points[mesh_.mid_nodes[t][i]];
-      if (has_positive_jacobian(nodes)) continue;
-      for (const VertexIndex v : mesh_.mid_nodes[t]) is_bad[v] = 1;
+  /// The face that this one is a copy of; itself if of none.
+  Triangle original_of(std::uint32_t period, const Triangle& copy) const {
+    Triangle original = copy;
+    for (std::size_t i = 0; i < 3; ++i) {
+      const auto at = original_[period].find(copy[i]);
+      if (at != original_[period].end())
+        original[i] = at->second;
+      else if (!is_own_copy(mesh_, period, copy[i]))
+        return copy;
     }
-    bool changed = false;
-    for (const Pair& p : pairs_) {
-      if (!is_bad[p.copy] && !is_bad[p.original]) continue;
-      const Vec3 to = (mesh_.points[p.of_original[0]] + mesh_.points[p.of_original[1]]) * 0.5;
-      // What is a copy itself is straight up to rounding once its own original is.
-      if (is_straight_.insert(p.original).second) mesh_.points[p.original] = to, changed = true;
-    }
-    return changed;
+    return nodes_.has(original) ? original : copy;
   }
 
-  TetMesh& mesh_;
-  const EdgeNodes node_of_;
-  std::vector<Pair> pairs_;
-  std::set<VertexIndex> is_straight_;
+  const TetMesh& mesh_;
+  const curved::FaceNodes nodes_;
+  std::vector<std::map<VertexIndex, VertexIndex>> original_;  ///< per period: of copies
 };
+
+void pair_behind_corners(TetMesh& mesh) {
+  const std::vector<NodeLink> links = LinksOfPairs(mesh).run();
+  const Repeats repeats{static_cast<std::uint32_t>(mesh.periods.size()),
+                        [&](std::uint32_t period, Vec3 p) { return led_by_period(mesh, period, p); },
+                        [](Vec3 p, std::span<const VertexIndex>) { return p; }};
+  pair_nodes_behind_corners(mesh, links, repeats);
+  for (const NodeLink& link : links) mesh.periodic_nodes.push_back({link.period, link.copy, link.original});
+  std::sort(mesh.periodic_nodes.begin(), mesh.periodic_nodes.end());
+}
 
 }  // namespace
 
@@ -105,7 +81,7 @@ std::vector<VertexIndex> paired_vertices(const TetMesh& mesh) {
 void pair_mid_nodes(TetMesh& mesh, Run& run) {
   if (mesh.periodic_nodes.empty()) return;
   run.stage("pairs", [&](const Stage& stage) {
-    if (mesh.is_second_order()) MidPairs(mesh).run();
+    if (mesh.order() > 1) pair_behind_corners(mesh);
     stage.count("pairs of nodes", static_cast<double>(mesh.periodic_nodes.size()));
   });
 }

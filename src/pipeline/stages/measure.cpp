@@ -7,6 +7,7 @@
 #include "base/mesh/quality_sum.h"
 #include "base/shared/packing.h"
 #include "base/shared/shared_tets.h"
+#include "improve/curved/curved.h"
 
 #include <algorithm>
 #include <cstring>
@@ -100,6 +101,21 @@ void describe_quality(const TetMesh& mesh, Report& report, const Comm& comm) {
   report.tets = report.quality.elements;
 }
 
+namespace {
+
+std::vector<double> flat_volumes(const TetMesh& mesh) {
+  std::vector<double> of_region;
+  for (std::size_t t = 0; t < mesh.tets.size(); ++t) {
+    const auto& [a, b, c, d] = mesh.tets[t];
+    const Vec3 p = mesh.points[a];
+    if (mesh.region[t] >= of_region.size()) of_region.resize(mesh.region[t] + 1, 0);
+    of_region[mesh.region[t]] += dot(cross(mesh.points[b] - p, mesh.points[c] - p), mesh.points[d] - p) / 6;
+  }
+  return of_region;
+}
+
+}  // namespace
+
 void describe_regions(const TetMesh& mesh, Report& report, const Comm& comm) {
   const std::uint32_t here = mesh.region.empty() ? 0 : 1 + *std::ranges::max_element(mesh.region);
   std::uint32_t regions = 0;
@@ -113,11 +129,8 @@ void describe_regions(const TetMesh& mesh, Report& report, const Comm& comm) {
   std::vector<OfRegion> mine(regions);
   const std::vector<QualitySum> quality = sums_of_regions(mesh, count_tets(mesh, comm).before, regions);
   for (std::uint32_t r = 0; r < regions; ++r) mine[r].quality = quality[r];
-  for (std::size_t t = 0; t < mesh.tets.size(); ++t) {
-    const auto& [a, b, c, d] = mesh.tets[t];
-    const Vec3 p = mesh.points[a];
-    mine[mesh.region[t]].volume += dot(cross(mesh.points[b] - p, mesh.points[c] - p), mesh.points[d] - p) / 6;
-  }
+  const std::vector<double> volumes = mesh.order() > 1 ? curved_volumes(mesh) : flat_volumes(mesh);
+  for (std::uint32_t r = 0; r < volumes.size(); ++r) mine[r].volume = volumes[r];
   std::vector<OfRegion> all(regions);
   const std::vector<OfRegion> of_ranks = gathered_lists(comm, mine, "regions");
   for (std::size_t i = 0; i < of_ranks.size(); ++i) {

@@ -3,13 +3,10 @@
 #include <octafront/error.h>
 #include <octafront/tet_mesh.h>
 
-#include "base/core/disjoint_sets.h"
 #include "base/core/wording.h"
-#include "base/geometry/curved_tet.h"
-#include "base/geometry/quadratic_tet.h"
-#include "base/mesh/quadratic_nodes.h"
 #include "improve/curved/face_nodes.h"
 #include "pipeline/stages/methods.h"
+#include "pipeline/stages/paired_nodes.h"
 #include "pipeline/stages/stages.h"
 #include "soup/periods/periods.h"
 #include "soup/tidy/examine.h"
@@ -146,123 +143,26 @@ class LinkFinder {
   std::optional<curved::FaceNodes> nodes_;  ///< of curved meshes
 };
 
-/// Nodes of faces behind corners, where their originals lead.
-class NodesBehindCorners {
- public:
-  NodesBehindCorners(TetMesh& mesh, const PeriodicCell& cell)
-      : mesh_(mesh), cell_(cell), set_(mesh.points.size()), place_(mesh.points.size()) {
-    find_places();
-    const NodeLinks links = LinkFinder(mesh, cell).run();
-    std::vector<std::uint8_t> is_copy(mesh.points.size(), 0);
-    for (std::size_t k = 0; k < links.size(); ++k)
-      for (const auto& [copy, original] : links[k]) {
-        if (place_[copy].count == 0) continue;
-        set_.join(copy, original);
-        links_.push_back({static_cast<int>(k), copy, original});
-        is_copy[copy] = 1;
-      }
-    for (const Link& link : links_)
-      if (!is_copy[link.original]) first_[set_.find(link.original)] = link.original;
-  }
+/// Where an original near p lies: in the low faces that all corners of its edge or face are in.
+Vec3 settled(const TetMesh& mesh, const PeriodicCell& cell, Vec3 p, std::span<const VertexIndex> corners) {
+  if (!cell.is_box()) return cell.on_grid(p);
+  for (int k = 0; k < cell.periods(); ++k)
+    if (std::ranges::all_of(corners, [&](VertexIndex v) { return cell.is_low(mesh.points[v], k); }))
+      p = cell.to_low(p, k);
+  return p;
+}
 
-  void run(const Stage& stage) {
-    for (const auto& [set, node] : first_) mesh_.points[node] = settled(mesh_.points[node], node);
-    follow();
-    std::uint64_t straightened = 0;
-    for (;;) {
-      const std::uint64_t now = straighten_bad();
-      if (now == 0) break;
-      straightened += now;
-      follow();
-    }
-    stage.count("nodes of periodic faces straightened", static_cast<double>(straightened));
-  }
-
- private:
-  struct Link {
-    int period;
-    VertexIndex copy, original;
-  };
-
-  /// The corners that a node lies between, and how it counts them.
-  struct Place {
-    std::array<VertexIndex, 3> corners{};
-    std::array<int, 3> weights{};
-    std::size_t count = 0;
-  };
-
-  void find_places() {
-    const curved::FaceNodes nodes(mesh_);
-    for (const Triangle& face : mesh_.boundary)
-      curved::visit_nodes_behind_corners(mesh_.order(), [&](const curved::FaceNodes::Weights& weights) {
-        Place place;
-        for (std::size_t i = 0; i < 3; ++i)
-          if (weights[i] > 0) place.corners[place.count] = face[i], place.weights[place.count++] = weights[i];
-        place_[nodes.node(face, weights)] = place;
-      });
-  }
-
-  /// Where an original near p lies: in the low faces that all corners of its edge or face are in.
-  Vec3 settled(Vec3 p, VertexIndex node) const {
-    if (!cell_.is_box()) return cell_.on_grid(p);
-    const Place& place = place_[node];
-    for (int k = 0; k < cell_.periods(); ++k)
-      if (std::all_of(place.corners.begin(), place.corners.begin() + static_cast<std::ptrdiff_t>(place.count),
-                      [&](VertexIndex v) { return cell_.is_low(mesh_.points[v], k); }))
-        p = cell_.to_low(p, k);
-    return p;
-  }
-
-  Vec3 straight(VertexIndex node) const {
-    const Place& place = place_[node];
-    Vec3 sum;
-    for (std::size_t i = 0; i < place.count; ++i) sum += place.weights[i] * mesh_.points[place.corners[i]];
-    return sum / mesh_.order();
-  }
-
-  std::span<const VertexIndex> behind_corners(TetIndex t) const {
-    if (mesh_.is_second_order()) return mesh_.mid_nodes[t];
-    return std::span(mesh_.high_nodes).subspan(t * mesh_.high_nodes_per_tet(), mesh_.high_nodes_per_tet());
-  }
-  bool is_valid(TetIndex t) const {
-    std::array<Vec3, 35> room;
-    if (mesh_.is_second_order()) return has_positive_jacobian(quadratic_nodes(mesh_, t));
-    return validity_of(mesh_.order(), nodes_of_tet(mesh_, t, room)) == Validity::kValid;
-  }
-
-  /// Copies come to where their originals lead: after as many rounds as there are periods all are there.
-  void follow() {
-    for (int k = 0; k < cell_.periods(); ++k)
-      for (const Link& link : links_) mesh_.points[link.copy] = cell_.to_high(mesh_.points[link.original], link.period);
-  }
-
-  std::uint64_t straighten_bad() {
-    std::vector<std::uint8_t> is_on_face(mesh_.points.size(), 0), is_bad(mesh_.points.size(), 0);
-    for (const Link& link : links_) is_on_face[link.copy] = is_on_face[link.original] = 1;
-    for (TetIndex t = 0; t < mesh_.tets.size(); ++t) {
-      const auto behind = behind_corners(t);
-      if (std::none_of(behind.begin(), behind.end(), [&](VertexIndex v) { return is_on_face[v] != 0; })) continue;
-      if (is_valid(t)) continue;
-      for (const VertexIndex v : behind)
-        if (is_on_face[v]) is_bad[set_.find(v)] = 1;
-    }
-    std::uint64_t changed = 0;
-    for (const auto& [set, node] : first_) {
-      if (!is_bad[set]) continue;
-      const Vec3 to = settled(straight(node), node);
-      changed += mesh_.points[node] != to;
-      mesh_.points[node] = to;
-    }
-    return changed;
-  }
-
-  TetMesh& mesh_;
-  const PeriodicCell& cell_;
-  DisjointSets set_;                            ///< of nodes that are copies
-  std::vector<Place> place_;                    ///< per node; of corners, and what is inside, none
-  std::vector<Link> links_;                     ///< of nodes behind corners
-  std::map<std::uint32_t, VertexIndex> first_;  ///< per set the node that is no copy
-};
+std::vector<NodeLink> links_behind_corners(const TetMesh& mesh, const PeriodicCell& cell) {
+  std::vector<char> is_corner(mesh.points.size());
+  for (const Tet& tet : mesh.tets)
+    for (const VertexIndex v : tet) is_corner[v] = 1;
+  std::vector<NodeLink> behind;
+  const NodeLinks links = LinkFinder(mesh, cell).run();
+  for (std::uint32_t k = 0; k < links.size(); ++k)
+    for (const auto& [copy, original] : links[k])
+      if (!is_corner[copy]) behind.push_back({k, copy, original});
+  return behind;
+}
 
 /// The names that make_periodic() gives to one face: "x_min", "x_min_2", ...
 bool is_own_name(const std::string& name, const PeriodicCell& cell, CellFace face) {
@@ -359,7 +259,12 @@ std::vector<VertexIndex> vertices_on_faces(const SurfaceMesh& surface, const Per
 }
 
 void pair_mid_nodes(TetMesh& mesh, const PeriodicCell& cell, const Stage& stage) {
-  if (cell.is_periodic() && mesh.order() > 1) NodesBehindCorners(mesh, cell).run(stage);
+  if (!cell.is_periodic() || mesh.order() == 1) return;
+  const Repeats repeats{static_cast<std::uint32_t>(cell.periods()),
+                        [&](std::uint32_t period, Vec3 p) { return cell.to_high(p, static_cast<int>(period)); },
+                        [&](Vec3 p, std::span<const VertexIndex> corners) { return settled(mesh, cell, p, corners); }};
+  const std::uint64_t straightened = pair_nodes_behind_corners(mesh, links_behind_corners(mesh, cell), repeats);
+  stage.count("nodes of periodic faces straightened", static_cast<double>(straightened));
 }
 
 void pair_nodes(const Prepared& input, TetMesh& mesh, Run& run) {

@@ -9,6 +9,7 @@
 #include "base/geometry/tet_lattice.h"
 #include "base/mesh/quadratic_nodes.h"
 #include "improve/curved/curved.h"
+#include "support/complexes.h"
 #include "support/named_surfaces.h"
 #include "support/rich_mesh.h"
 
@@ -111,6 +112,17 @@ TEST(HighOrder, ATorusOfFewElementsIsEasedAndProven) {
       EXPECT_GE(made.report.second_order.least_scaled_jacobian, 0.09) << size << " " << order;
       EXPECT_NEAR(made.report.volume / (2 * std::numbers::pi * std::numbers::pi * 0.35 * 0.35), 1, 0.05);
     }
+}
+
+TEST(HighOrder, VolumesOfRegionsAreThoseOfCurvedElements) {
+  Options options;
+  options.size.size = 0.4;
+  for (const int order : {2, 3}) {
+    options.order = order;
+    const Report report = generate(testing::nested_shells(2).surface, options).report;
+    ASSERT_EQ(report.regions.size(), 2u);
+    EXPECT_NEAR(report.regions[0].volume + report.regions[1].volume, report.volume, 1e-12) << order;
+  }
 }
 
 TEST(HighOrder, WhatIsNotForItIsRefused) {

@@ -4,6 +4,7 @@
 #include <octafront/generate.h>
 #include <octafront/improve_existing.h>
 #include <octafront/quality.h>
+#include <octafront/second_order.h>
 #include <octafront/validity.h>
 
 #include <algorithm>
@@ -244,13 +245,14 @@ TEST(PeriodicMaps, HexagonsGoOnInThreeDirections) {
 TEST(PeriodicMaps, ImprovementKeepsPairs) {
   const SurfaceMesh surface = sector(30, 0, straight, false);
   const Result r = generate(surface, by(0.3, "30@z"));
-  for (const int order : {1, 2})
+  for (const int order : {1, 2, 3, 4})
     for (const SurfaceMesh* on : {static_cast<const SurfaceMesh*>(nullptr), &surface}) {
       SCOPED_TRACE(::testing::Message() << order << " " << (on != nullptr));
       Options o;
       o.order = order;
       const Improved better = improve_existing(r.mesh, o, on);
       expect_copies(better.mesh, {{"left", "right"}});
+      EXPECT_EQ(check_jacobians(better.mesh).invalid, 0u);
       EXPECT_GE(better.mesh.periodic_nodes.size(), order * r.mesh.periodic_nodes.size());
     }
 }

@@ -1,5 +1,6 @@
 #include <octafront/error.h>
 #include <octafront/generate.h>
+#include <octafront/improve_existing.h>
 #include <octafront/quality.h>
 #include <octafront/second_order.h>
 #include <octafront/validity.h>
@@ -113,6 +114,12 @@ TEST(Periodic, NodesBehindCornersArePaired) {
     EXPECT_EQ(check_jacobians(pipe.mesh).invalid, 0u);
     EXPECT_GT(pipe.report.second_order.curved, 100u);
     expect_same_faces(pipe.mesh, 2);
+    Options same;
+    same.order = order;
+    const Improved improved = improve_existing(pipe.mesh, same);
+    EXPECT_EQ(check_jacobians(improved.mesh).invalid, 0u);
+    expect_same_faces(improved.mesh, 2);
+    EXPECT_NEAR(improved.report.volume, pipe.report.volume, 1e-3 * pipe.report.volume);
   }
 }
 

@@ -1,4 +1,4 @@
-#include "improve/curved/high_nodes.h"
+#include "improve/curved/node_numbers.h"
 
 #include "base/core/parallel.h"
 #include "base/mesh/face_table.h"
