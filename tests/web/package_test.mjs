@@ -38,7 +38,7 @@ const CASES = [
 ];
 for (const [names, options] of CASES) {
   test(`the same mesh as the native program: ${names} ${JSON.stringify(options)}`, async () => {
-    const part = await open(names.map(sample)), mesh = await part.mesh(options);
+    const part = await open(names.map(sample), {}, { options }), mesh = await part.mesh(options);
     const expected = nativeReport(names, options);
     assert.equal(mesh.report.hash, expected.hash);
     assert.equal(mesh.report.tets, expected.tets);
