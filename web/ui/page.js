@@ -352,7 +352,7 @@ async function reread() {
 
 // --- what it will take
 
-let foreseeing = null;
+let foreseeing = null; // null: what is shown holds
 function foresee() {
   foreseeing?.abort();
   const mine = (foreseeing = new AbortController()), box = byId("estimate");
@@ -368,7 +368,15 @@ function foresee() {
       if (!mine.signal.aborted) box.textContent = brief(shown(error.message), 300);
     }
     box.removeAttribute("aria-busy");
+    if (foreseeing === mine) foreseeing = null;
   }, PAUSE);
+}
+/** Of options that were changed since nothing is known. */
+function dropForesight() {
+  if (!foreseeing) return;
+  foreseeing.abort();
+  foreseeing = now.expected = null;
+  byId("estimate").replaceChildren();
 }
 function showPlan({ reports: [report], sources = [] }) {
   const { expected_tets: tets, seconds: time, memory_bytes: memory, smallest_size: least, largest_size: most } = report.dry_run;
@@ -400,7 +408,7 @@ function dropMesh() {
 
 async function makeMesh() {
   const made = await work("meshing", async (given) => {
-    foreseeing?.abort();
+    dropForesight();
     const options = optionsOf(history.now, isCad()), isShown = !(now.expected > MOST_SHOWN);
     const left = await engine.run("mesh", { input: inputPaths(), output: "mesh.msh", options: { ...options, ...(isShown ? { report: "report.html" } : {}) } }, given);
     return takeMesh(left, given, asCommand(inputNames(), options, targetName()));
