@@ -5,7 +5,7 @@ volumes by quadrature, groups with their sizes, and areas or volumes.
     judges.py FOLDER [FORMAT ...]
 
 Judges: gmsh (msh, msh22, unv, nastran, medit), meshio (abaqus, nastran, vtu, vtk, meditb, netgen, xdmf, tetgen, exodus; cells: the
-tetrahedra alone, in what it reads), VTK (vtu, vtk, exodus), CalculiX (abaqus), python3-med (med), h5py (xdmf, cgns),
+tetrahedra alone, in what it reads), VTK (vtu, vtk, exodus), CalculiX (abaqus), MFEM (mfem, $MFEM_DIR says where it was built), Netgen itself (netgen of orders 3 and 4, $NETGEN_DIR), DOLFINx (xdmf, and msh22 of order 3), python3-med (med), h5py (xdmf, cgns),
 cgnscheck (cgns), checkMesh (openfoam), ideasUnvToFoam (unv), gmshToFoam (msh22 as text), and for what nobody in Debian
 reads (ansys, lsdyna, febio, su2), readers of their own in second_readers.py, written from the manuals.
 What is not installed is skipped, and said. Exit status 1 if any judge finds a difference.
@@ -124,6 +124,33 @@ def near(what, found, wanted, tolerance):
         raise Difference(f"{what}: {found:.15g}, not {wanted:.15g}")
 
 
+def cubic_map(p):
+    """The derivatives of write_samples' bent_cubically(); p: an array of shape (3, ...)."""
+    x, y, z = p
+    i = np.ones_like(x)
+    return np.array([[i, .008 * y * z, .004 * y * y], [-.002 * z, i, .009 * z * z - .002 * x], [.01 * x * y, .005 * x * x, i]])
+
+
+def measures_of_cube(n):
+    """Of [0, n]^3 under cubic_map(): volumes of its halves by x, and areas of its sides, by x, y, z, and of the plane between."""
+    at, weights = np.polynomial.legendre.leggauss(24)
+    u, w = n * (at + 1) / 2, n * weights / 2
+    volumes = []
+    for half in (0, 1):
+        grid = np.array(np.meshgrid(half * n / 2 + u / 2, u, u, indexing="ij"))
+        det = np.linalg.det(np.moveaxis(cubic_map(grid), (0, 1), (-2, -1)))
+        volumes.append(np.einsum("i,j,k,ijk", w / 2, w, w, det))
+    areas = []
+    for axis, place in ((0, 0), (0, n), (1, 0), (1, n), (2, 0), (2, n), (0, n / 2)):
+        a, b = np.meshgrid(u, u, indexing="ij")
+        point = np.insert(np.array([a, b]), axis, np.full_like(a, place), axis=0)
+        slopes = np.moveaxis(cubic_map(point), (0, 1), (-2, -1))
+        others = [k for k in range(3) if k != axis]
+        normal = np.cross(slopes[..., others[0]], slopes[..., others[1]])
+        areas.append(np.einsum("i,j,ij", w, w, np.linalg.norm(normal, axis=-1)))
+    return volumes, areas
+
+
 def underscored(name):
     return "".join(c if c.isalnum() or c in "_-" else "_" for c in name)
 
@@ -191,6 +218,11 @@ def judge_msh(folder, expected):
 
 
 def judge_msh22(folder, expected):
+    if expected is None:
+        # DOLFINx knows Gmsh's elements up to order 3.
+        if folder.name == "third":
+            yield "DOLFINx", of_cube(with_dolfinx(folder / "msh22.msh"), 3)
+        return
     yield "gmsh", with_gmsh(folder / "msh22.msh", expected, NUMBERED, lambda n: n.replace('"', "_"))
     if folder.name == "linear_text":
         # It loses names with blanks, and those that come after them.
@@ -210,6 +242,96 @@ def judge_unv(folder, expected):
 
 def judge_medit(folder, expected):
     yield "gmsh", with_gmsh(folder / "medit.mesh", expected, {"region": "size", "patch": "size", "curve": "size"}, None, by_entity=True)
+
+
+# ---- DOLFINx
+
+def with_dolfinx(file):
+    import dolfinx  # noqa: F401, else there is nothing to ask
+    return asked(sys.executable, "DOLFINx", Path(__file__).parent / "dolfinx_judge.py", file)
+
+
+# ---- MFEM
+
+def mfem_program(work, source=Path(__file__).parent / "mfem_judge.cpp"):
+    """Built against MFEM where it was built ($MFEM_DIR) or where the system has it."""
+    own, program = os.environ.get("MFEM_DIR"), Path(work) / "mfem_judge"
+    places = [f"-I{own}", f"-L{own}"] if own else []
+    done = subprocess.run(["g++", "-O1", "-std=c++17", *places[:1], source, "-o", program, *places[1:], "-lmfem", "-lrt"],
+                          capture_output=True, check=False)
+    if done.returncode != 0:
+        raise ImportError("no MFEM ($MFEM_DIR, or libmfem-dev)")
+    return program
+
+
+def asked(program, title, *arguments):
+    """What one of these programs prints."""
+    done = subprocess.run([program, *arguments], capture_output=True, text=True, timeout=240)
+    if done.returncode != 0:
+        raise Difference(f"{title}: {(done.stdout + done.stderr)[-800:]}")
+    read = json.loads(done.stdout[done.stdout.index("{"):])
+    if read["least_jacobian"] <= 0:
+        raise Difference(f"{title} finds a Jacobian of {read['least_jacobian']}")
+    return read
+
+
+def with_mfem(file, *more):
+    with tempfile.TemporaryDirectory() as work:
+        return asked(mfem_program(work), "MFEM", file, *more)
+
+
+def with_netgen(file):
+    """By Netgen's sources of April 2026 or later ($NETGEN_DIR), built in their folder build without Python and graphics."""
+    own = Path(os.environ.get("NETGEN_DIR", "/nowhere"))
+    objects = [*(own / "build/CMakeFiles/nglib.dir").rglob("*.o")]
+    core = own / "build/libsrc/core"
+    if not objects:
+        raise ImportError("no Netgen ($NETGEN_DIR)")
+    with tempfile.TemporaryDirectory() as work:
+        program = Path(work) / "netgen_judge"
+        places = [f"-I{own / place}" for place in ("build", ".", "include", "libsrc", "libsrc/include")]
+        subprocess.run(["g++", "-O1", "-std=c++17", *places, Path(__file__).parent / "netgen_judge.cpp", "-o", program, *objects,
+                        f"-L{core}", f"-Wl,-rpath,{core}", "-lngcore", "-lz", "-lpthread"], check=True, capture_output=True)
+        return asked(program, "Netgen", file)
+
+
+def judge_mfem(folder, expected):
+    read = with_mfem(folder / "mfem.msh")
+    if expected is None:
+        yield "MFEM", of_cube(read, ORDERS[folder.name])
+        return
+    for part in expected["parts"]:
+        if part["origin"] in ("region", "patch") and part["named"]:
+            names = read["names" if part["origin"] == "region" else "boundary_names"]
+            same(f"numbers of {part['name']}", names[part["name"]], [part["number"] + 1])
+    yield "MFEM", by_number(read, expected)
+
+
+def by_number(read, expected):
+    """Volumes and areas of regions and patches, which have their numbers."""
+    same("nodes", read["nodes"], expected["nodes"])
+    same("elements", read["elements"], expected["tets"])
+    near("volume", read["volume"], expected["volume"], 1e-13)
+    parts = [part for part in expected["parts"] if part["origin"] in ("region", "patch")]
+    for part in parts:
+        is_region = part["origin"] == "region"
+        found = read["regions" if is_region else "patches"][str(part["number"] + 1)]
+        same(f"size of {part['name']}", found["size"], part["size"])
+        # The area of a curved face is no polynomial: quadratures differ by little.
+        near(f"measure of {part['name']}", found["measure"], part["measure" if is_region else "area"], 1e-12 if is_region else 1e-7)
+    return len(parts)
+
+
+def of_cube(read, order, n=4, nodes=None):
+    same("order", read["order"], order)
+    same("nodes", read["nodes"], nodes or (n * order + 1) ** 3)
+    same("elements", read["elements"], 6 * n ** 3)
+    volumes, areas = measures_of_cube(n)
+    for number, volume in enumerate(volumes, 1):
+        near(f"volume of region {number}", read["regions"][str(number)]["measure"], volume, 1e-13)
+    for number, area in enumerate(areas, 1):
+        near(f"area of patch {number}", read["patches"][str(number)]["measure"], area, 1e-12)
+    return len(volumes) + len(areas)
 
 
 # ---- meshio
@@ -298,6 +420,9 @@ def judge_meditb(folder, expected):
 
 
 def judge_netgen(folder, expected):
+    if expected is None:
+        yield "Netgen", of_cube(with_netgen(folder / "netgen.vol"), ORDERS[folder.name], nodes=5 ** 3)
+        return
     mesh = with_meshio(folder / "netgen.vol")
     found, _ = from_meshio(mesh)
     parts_by_number(found, mesh, expected, "netgen:index")
@@ -496,6 +621,7 @@ def judge_xdmf(folder, expected):
     yield "h5py", found_from(found).compare(expected, ALL)
     mesh = with_meshio(folder / "xdmf.xdmf")
     yield "meshio", from_meshio(mesh)[0].compare(expected, {})
+    yield "DOLFINx", by_number(with_dolfinx(folder / "xdmf.xdmf"), expected)
 
 
 def judge_cgns(folder, expected):
@@ -617,6 +743,8 @@ def judge_cells(folder, expected):
         yield f"meshio ({name})", from_meshio(mesh)[0].compare(expected, {})
 
 
+OF_HIGH_ORDER = ("mfem", "msh22", "netgen")
+ORDERS = {"third": 3, "fourth": 4}
 JUDGES = {name[6:]: judge for name, judge in globals().items() if name.startswith("judge_")}
 
 
@@ -624,8 +752,11 @@ def main():
     folder = Path(sys.argv[1])
     failed = 0
     for name in sys.argv[2:] or JUDGES:
-        for order in ("linear", "second", "linear_text", "second_text"):
-            expected = json.loads((folder / order / "expected.json").read_text())
+        for order in ("linear", "second", *ORDERS, "linear_text", "second_text"):
+            if order in ORDERS and name not in OF_HIGH_ORDER:
+                continue
+            file = folder / order / "expected.json"
+            expected = json.loads(file.read_text()) if file.exists() else None
             if order.endswith("_text") and not any((folder / order).glob(name + ".*")):
                 continue
             if not any((folder / order).glob(name + ".*")) and name not in ("openfoam", "cells"):

@@ -514,6 +514,20 @@ def judge_su2(folder, expected):
     yield "second reader", Read.of(mixed_readers.su2(folder / "su2.su2")).compare(outside, ("faces",), sets=False)
 
 
+def judge_mfem(folder, expected):
+    read = judges.with_mfem(folder / "mfem.msh")
+    same("nodes", read["nodes"], expected["nodes"])
+    same("elements", read["elements"], sum(expected[kind] for kind in CORNERS))
+    same("boundary", read["boundary"], expected["triangle"] + expected["quad"])
+    parts = [p for p in expected["parts"] if not p["set"]]
+    for kind, names, measures in (("elements", "names", "regions"), ("faces", "boundary_names", "patches")):
+        for part in (p for p in parts if p["kind"] == kind):
+            number, = read[names][part["name"]]
+            same(f"size of {part['name']}", read[measures][str(number)]["size"], part["size"])
+            near(f"measure of {part['name']}", read[measures][str(number)]["measure"], part["measure"], 1e-12)
+    yield "MFEM", len(parts)
+
+
 JUDGES = {name[6:]: judge for name, judge in globals().items() if name.startswith("judge_")}
 
 

@@ -386,6 +386,7 @@ std::vector<SmallFile> more_mesh_files() {
                                {"ours.bdf", written_as("nastran", ".bdf")},
                                {"ours.unv", written_as("unv", ".unv")},
                                {"ours.vol", written_as("netgen", ".vol")},
+                               {"ours_mfem.mesh", written_as("mfem", ".mesh")},
                                {"ours.vtk", written_as("vtk", ".vtk")},
                                {"ours.meshb", written_as("meditb", ".meshb")},
                                {"other.inp", kAbaqus},

@@ -2,7 +2,8 @@
 //   write_samples FOLDER
 // leaves FOLDER/linear/..., FOLDER/second/..., what is text or binary also as text in FOLDER/linear_text/..., the
 // tetrahedra alone in FOLDER/linear_cells/..., one with wedges and pyramids in FOLDER/mixed_linear/... and
-// FOLDER/mixed_second/..., and in each expected.json: what a judge must find; with fields in FOLDER/linear_fields/...
+// FOLDER/mixed_second/..., and in each expected.json: what a judge must find; of orders 3 and 4 in FOLDER/third/... and
+// FOLDER/fourth/..., bent by a map that judges know; with fields in FOLDER/linear_fields/...
 // and so on, for field_judges.py.
 
 #include <octafront/field_files.h>
@@ -16,6 +17,7 @@
 #include <cmath>
 #include <filesystem>
 #include <string>
+#include <utility>
 
 #include <fmt/core.h>
 
@@ -28,6 +30,13 @@ namespace fs = std::filesystem;
 TetMesh bent(TetMesh mesh) {
   for (Vec3& p : mesh.points)
     p = p + Vec3{0.08 * std::sin(1.1 * p.y + 0.3), 0.07 * std::cos(1.3 * p.z), 0.09 * std::sin(0.9 * p.x + p.y)};
+  return mesh;
+}
+
+/// Bends a mesh of order 3 or 4 by polynomials of degree 3, which its elements hold exactly: the same in judges.py.
+TetMesh bent_cubically(TetMesh mesh) {
+  for (Vec3& p : mesh.points)
+    p = p + Vec3{0.004 * p.y * p.y * p.z, 0.003 * p.z * p.z * p.z - 0.002 * p.x * p.z, 0.005 * p.x * p.x * p.y};
   return mesh;
 }
 
@@ -117,16 +126,18 @@ std::string expected(const TetMesh& mesh) {
   constexpr std::array kOrigins{"region", "patch", "curve", "set"};
   constexpr std::array kKinds{"nodes", "edges", "faces", "elements"};
   for (const io::Part& part : parts.parts()) {
-    double measure = 0;
+    double measure = 0, curved = 0;
     for (const std::uint32_t m : part.members) {
       if (part.kind == NamedSet::Kind::kElements) measure += volume(parts.tet_nodes(m, tet), mesh.points);
-      if (part.kind == NamedSet::Kind::kFaces) measure += length(vector_area(parts.face_nodes(m, face), mesh.points));
+      if (part.kind != NamedSet::Kind::kFaces) continue;
+      measure += length(vector_area(parts.face_nodes(m, face), mesh.points));
+      curved += area(parts.face_nodes(m, face), mesh.points);
     }
     out += fmt::format(
         "  {{\"origin\": \"{}\", \"kind\": \"{}\", \"name\": {}, \"named\": {}, \"number\": {}, \"size\": {}, "
-        "\"nodes\": {}, \"measure\": {:.17g}}}{}\n",
+        "\"nodes\": {}, \"measure\": {:.17g}, \"area\": {:.17g}}}{}\n",
         kOrigins[static_cast<std::size_t>(part.origin)], kKinds[static_cast<std::size_t>(part.kind)], quoted(part.name),
-        part.is_named, part.number, part.members.size(), parts.nodes_of(part).size(), measure,
+        part.is_named, part.number, part.members.size(), parts.nodes_of(part).size(), measure, curved,
         &part == &parts.parts().back() ? "" : ",");
   }
   return out + "]}\n";
@@ -187,7 +198,8 @@ template <class Wanted>
 void write_those(const fs::path& folder, const TetMesh& mesh, WriteOptions options, const Wanted& wanted,
                  const std::vector<MeshField>& fields = {}) {
   fs::create_directories(folder);
-  write_text(folder / "expected.json", mesh.wide_cells.empty() ? expected(mesh) : expected_mixed(mesh));
+  if (mesh.high_order == 0)
+    write_text(folder / "expected.json", mesh.wide_cells.empty() ? expected(mesh) : expected_mixed(mesh));
   for (const FormatInfo& info : known_formats()) {
     if (!info.writes_mesh || !wanted(info)) continue;
     const std::string ending(info.endings.substr(0, info.endings.find(' ')));
@@ -243,6 +255,9 @@ int main(int argc, char** argv) {
   const TetMesh linear = octafront::testing::rich_mesh(4);
   write_all(folder + "/linear", bent(linear));
   write_all(folder + "/second", bent(octafront::testing::with_mid_nodes(linear)));
+  for (const auto& [name, order] : {std::pair{"/third", 3}, std::pair{"/fourth", 4}})
+    write_those(folder + name, bent_cubically(octafront::testing::with_high_nodes(linear, order)), {},
+                [](const FormatInfo& info) { return info.holds.high_order && info.reads_mesh; });
   write_parts(folder + "/linear", bent(linear));
   write_parts(folder + "/second", bent(octafront::testing::with_mid_nodes(linear)));
   const TetMesh mixed = octafront::testing::mixed_mesh(3);

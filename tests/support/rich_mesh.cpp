@@ -1,9 +1,12 @@
 #include "support/rich_mesh.h"
 
+#include "base/geometry/tet_lattice.h"
+
 #include <algorithm>
 #include <array>
 #include <map>
 #include <utility>
+#include <vector>
 
 namespace octafront::testing {
 namespace {
@@ -114,6 +117,27 @@ TetMesh with_mid_nodes(TetMesh mesh) {
       mids[e] = entry->second;
     }
   }
+  return mesh;
+}
+
+TetMesh with_high_nodes(TetMesh mesh, int order) {
+  const TetLattice& lattice = tet_lattice(order);
+  mesh.high_order = static_cast<std::uint32_t>(order);
+  // By the corners that have a share in a node, and their shares.
+  std::map<std::vector<std::pair<VertexIndex, int>>, VertexIndex> node_of;
+  for (const Tet& t : mesh.tets)
+    for (std::size_t k = 4; k < lattice.size(); ++k) {
+      std::vector<std::pair<VertexIndex, int>> shares;
+      for (std::size_t c = 0; c < 4; ++c)
+        if (const int w = lattice.weights(k)[c]; w > 0) shares.emplace_back(t[c], w);
+      std::sort(shares.begin(), shares.end());
+      const auto [entry, is_new] = node_of.try_emplace(shares, static_cast<VertexIndex>(mesh.points.size()));
+      mesh.high_nodes.push_back(entry->second);
+      if (!is_new) continue;
+      Vec3 place;
+      for (const auto& [v, w] : shares) place += mesh.points[v] * (static_cast<double>(w) / order);
+      mesh.points.push_back(place);
+    }
   return mesh;
 }
 

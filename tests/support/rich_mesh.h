@@ -13,4 +13,7 @@ TetMesh rich_mesh(int n);
 /// The same mesh of second order; mid-side nodes in the middle of their edges.
 TetMesh with_mid_nodes(TetMesh mesh);
 
+/// The same mesh of order 3 or 4; nodes at their places in straight elements.
+TetMesh with_high_nodes(TetMesh mesh, int order);
+
 }  // namespace octafront::testing

@@ -159,6 +159,8 @@ constexpr Format of_several_files(Format format) {
   format.info.one_file = false;
   return format;
 }
+constexpr FormatHolds kMfem{
+    .regions = Keeps::kNames, .patches = Keeps::kNames, .interfaces = true, .second_order = true};
 constexpr FormatHolds kTissues{.regions = Keeps::kNumbers, .interfaces = true};
 constexpr FormatHolds kSu2{.patches = Keeps::kNames};
 constexpr FormatHolds kOpenFoam{.regions = Keeps::kNames, .patches = Keeps::kNames, .interfaces = true};
@@ -252,7 +254,11 @@ constexpr std::array kFormats{
     read(with_surfaces_alone(with_linear_wedges(
              mesh("meditb", "MEDIT binary", ".meshb", binary(kNumbersOnly), "references", write_medit_binary))),
          told_medit_binary, read_medit_binary),
-    read(mesh("netgen", "Netgen", ".vol", without_sets(kAll), "materials, bcnames, cd2names", write_netgen),
+    read(with_linear_wedges(mesh("mfem", "MFEM", "", all_orders(kMfem),
+                                 "text: attributes, names as sets of them; curved nodes of orders 2 to 4", write_mfem)),
+         told_mfem, read_mfem),
+    read(mesh("netgen", "Netgen", ".vol", all_orders(without_sets(kAll)),
+              "materials, bcnames, cd2names; orders 3 and 4 for Netgen from April 2026 on", write_netgen),
          told_netgen, read_netgen),
     read(of_several_files(mesh("tetgen", "TetGen", ".ele .node", kNumbersOnly,
                                "NAME.node, .ele, .face, .edge with markers", write_tetgen)),

@@ -24,8 +24,9 @@ class Losses {
       lose(fmt::format("holds linear elements only: {} mid-side nodes are left out",
                        mesh_.mesh().points.size() - mesh_.points()));
     if (!holds.high_order && mesh_.mesh().high_order > 0)
-      lose(fmt::format("holds no elements of order {}: {} nodes are left out, and elements are linear",
-                       mesh_.mesh().order(), mesh_.mesh().points.size() - mesh_.points()));
+      lose(fmt::format("holds no elements of order {}: {} nodes are left out, and elements are linear; {} hold them{}",
+                       mesh_.mesh().order(), mesh_.mesh().points.size() - mesh_.points(), names_of_high_order(),
+                       way_out()));
     if (const std::size_t wide = mesh_.mesh().wide_cells.size(); mesh_.wide_cells().size() < wide)
       lose(fmt::format("is given no wedges and pyramids{} here: {} are written as their tetrahedra",
                        !holds.wide_cells ? "" : fmt::format(" of order {}", mesh_.mesh().order()), wide));
@@ -48,6 +49,19 @@ class Losses {
 
  private:
   void lose(const std::string& what) { notes_.push_back(fmt::format("{} {}", format_.title, what)); }
+
+  static std::string names_of_high_order() {
+    std::string names;
+    for (const Format& other : formats())
+      if (other.info.holds.high_order && other.info.writes_mesh)
+        names += (names.empty() ? "" : ", ") + std::string(other.info.name);
+    return names;
+  }
+
+  /// For programs that read the format.
+  std::string_view way_out() const {
+    return format_.name == "xdmf" ? "; DOLFINx reads order 3 from msh (gmshio), and takes order 4 as arrays" : "";
+  }
 
   void leave_out_faces() {
     const TetMesh& mesh = mesh_.mesh();

@@ -17,7 +17,7 @@ namespace {
 
 constexpr std::array kOrigins{Part::Origin::kRegion, Part::Origin::kPatch, Part::Origin::kCurve};
 
-std::size_t corner_points(const TetMesh& mesh) {
+std::size_t corner_count(const TetMesh& mesh) {
   if (mesh.order() == 1) return mesh.points.size();
   VertexIndex corners = 0;
   for (const Tet& t : mesh.tets) corners = std::max(corners, 1 + *std::max_element(t.begin(), t.end()));
@@ -49,7 +49,7 @@ MeshParts::MeshParts(const TetMesh& mesh, Hidden hidden)
       hidden_(hidden),
       second_order_(mesh.is_second_order() && !hidden.mid_nodes),
       order_(hidden.mid_nodes ? 1 : mesh.order()),
-      points_(hidden.mid_nodes ? corner_points(mesh) : mesh.points.size() - hidden.last_points),
+      points_(hidden.mid_nodes ? corner_count(mesh) : mesh.points.size() - hidden.last_points),
       mids_(second_order_ ? mesh : empty_mesh()),
       high_(order_ > 2 ? mesh : empty_mesh()) {
   const std::array<std::uint32_t, 3> counts{static_cast<std::uint32_t>(tets()), static_cast<std::uint32_t>(faces()),
@@ -133,6 +133,10 @@ std::span<const VertexIndex> MeshParts::face_nodes(std::size_t f, FaceRoom& room
 std::span<const VertexIndex> MeshParts::edge_nodes(std::size_t e, EdgeRoom& room) const {
   for (std::size_t k = 0; k < nodes_per_edge(); ++k) room[k] = edge_node(e, k);
   return std::span(room).first(nodes_per_edge());
+}
+
+std::size_t MeshParts::corner_points() const {
+  return corner_count(mesh_);
 }
 
 const std::vector<Side>& MeshParts::sides() const {

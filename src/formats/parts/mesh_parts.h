@@ -65,6 +65,8 @@ class MeshParts {
   const TetMesh& mesh() const { return mesh_; }
   /// Points that are to be written: the first ones of the mesh.
   std::size_t points() const { return points_; }
+  /// Of these the corners of tetrahedra, which come first where there are others.
+  std::size_t corner_points() const;
   std::size_t tets() const { return mesh_.tets.size(); }
   std::size_t faces() const { return hidden_.faces ? 0 : mesh_.boundary.size() + mesh_.interfaces.size(); }
   std::size_t edges() const { return hidden_.faces ? 0 : mesh_.curve_edges.size(); }
@@ -113,6 +115,12 @@ class MeshParts {
     constexpr std::array<std::uint8_t, 6> kMids{0, 3, 1, 2, 4, 5};  // of kTetEdges
     if (order_ > 2) return high_.of_tet(t, k);
     return k < 4 ? mesh_.tets[t][k] : mesh_.mid_nodes[t][kMids[k - 4]];
+  }
+  /// The same in the order of tet_lattice().
+  VertexIndex lattice_node(std::size_t t, std::size_t k) const {
+    return k < 4         ? mesh_.tets[t][k]
+           : order_ == 2 ? mesh_.mid_nodes[t][k - 4]
+                         : mesh_.high_nodes[t * (nodes_per_tet() - 4) + k - 4];
   }
   VertexIndex face_node(std::size_t f, std::size_t k) const {
     const Triangle& t = face(f);

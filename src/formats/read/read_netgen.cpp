@@ -1,13 +1,19 @@
 // Netgen .vol: sections with a count, then as many lines; what is not needed is passed over. Points come last, so that
 // indices are checked at the end. See write_netgen.cpp for the order of nodes.
 
+#include "base/geometry/tet_lattice.h"
 #include "formats/containers/scanner.h"
+#include "formats/parts/mfem_nodes.h"
+#include "formats/parts/netgen_curves.h"
 #include "formats/parts/raw_mesh.h"
 #include "formats/parts/surface_builder.h"
 #include "formats/read/readers.h"
 
+#include <algorithm>
 #include <array>
 #include <map>
+#include <optional>
+#include <vector>
 
 #include <fmt/core.h>
 
@@ -16,6 +22,17 @@ namespace {
 
 /// Mid-side nodes behind the corners 1 2 3 4: 12 13 14 23 24 34.
 constexpr MidOrder kNetgenMids = kPlainMids;
+
+/// What "curvedelements" says.
+struct CurvesOfFile {
+  struct Part {
+    std::vector<std::int64_t> order, first;
+    std::vector<Vec3> coefficients;
+  };
+  Part edges, faces;
+  std::int64_t order = 1;
+  bool is_rational = false;
+};
 
 class Netgen {
  public:
@@ -35,12 +52,18 @@ class Netgen {
         for_each(section, 12, [this] { read_volume_element(); });
       } else if (section == "edgesegmentsgi2") {
         for_each(section, 8, [this] { read_segment(); });
+      } else if (section == "edgesegmentsgi3") {
+        for_each(section, 8, [this] { read_segment_of_2026(); });
+      } else if (section == "edgedescriptors") {
+        for_each(section, 8, [this] { read_edge_descriptor(); });
       } else if (section == "points") {
         for_each(section, 6, [this] {
           const double x = scan_.number("a coordinate"), y = scan_.number("a coordinate"),
                        z = scan_.number("a coordinate");
           raw_.points.push_back({x, y, z});
         });
+      } else if (section == "curvedelements") {
+        read_curves();
       } else if (section == "materials") {
         read_names(section, raw_.region_names);
       } else if (section == "bcnames") {
@@ -51,6 +74,8 @@ class Netgen {
     }
     if (!ended) scan_.fail_expected("\"endmesh\"");
     check_indices();
+    number_edges_by_descriptors();
+    if (curves_) take_curves();
     return std::move(raw_);
   }
 
@@ -116,11 +141,134 @@ class Netgen {
     raw_.edge_ref.push_back(scan_.integer("the number of an edge"));
   }
 
+  /// Since April 2026: its last number is that of a descriptor, from 0 on.
+  void read_segment_of_2026() {
+    const VertexIndex a = vertex(), b = vertex();
+    scan_.integer("a triangle"), scan_.integer("a triangle");
+    scan_.number("a distance"), scan_.number("a distance");
+    raw_.edges.push_back({a, b});
+    raw_.edge_ref.push_back(scan_.integer("the number of a descriptor"));
+    has_descriptors_ = true;
+  }
+
+  /// The number of an edge, seven more, its name.
+  void read_edge_descriptor() {
+    descriptors_.push_back(scan_.integer("the number of an edge"));
+    std::string_view name;
+    for (int word = 0; word < 8 && !scan_.at_line_end(); ++word) name = scan_.word();
+    if (!name.empty() && name != "default") raw_.curve_names.try_emplace(descriptors_.back(), name);
+  }
+
+  void number_edges_by_descriptors() {
+    if (!has_descriptors_) return;
+    for (std::int64_t& ref : raw_.edge_ref) {
+      const bool is_known = ref >= 0 && ref < static_cast<std::int64_t>(descriptors_.size());
+      ref = is_known ? descriptors_[static_cast<std::size_t>(ref)] : ref + 1;
+    }
+  }
+
   void read_names(std::string_view section, std::map<std::int64_t, std::string>& names) {
     for_each(section, 3, [&] {
       const std::int64_t number = scan_.integer("a number");
       names[number] = scan_.rest_of_line();
     });
+  }
+
+  template <class T, class Read>
+  std::vector<T> read_list(std::string_view what, std::uint64_t least_bytes, const Read& read_one) {
+    scan_.at_end();
+    const char* const at = scan_.position();
+    const std::int64_t count = scan_.integer("a count");
+    if (count < 0) scan_.fail(fmt::format("{} {}; the file is damaged", count, what));
+    check_claim(input_, at, {static_cast<std::uint64_t>(count), least_bytes, what}, scan_.bytes_left());
+    std::vector<T> all;
+    for (std::int64_t i = 0; i < count; ++i) all.push_back(read_one());
+    return all;
+  }
+
+  void read_curves() {
+    const auto number = [&] { return scan_.integer("a number of curved elements"); };
+    const auto vector = [&] {
+      const double x = scan_.number("a coefficient"), y = scan_.number("a coefficient"),
+                   z = scan_.number("a coefficient");
+      return Vec3{x, y, z};
+    };
+    CurvesOfFile& curves = curves_.emplace();
+    curves.edges.order = read_list<std::int64_t>("edges", 2, number);
+    curves.faces.order = read_list<std::int64_t>("faces", 2, number);
+    curves.edges.first = read_list<std::int64_t>("edges", 2, number);
+    curves.faces.first = read_list<std::int64_t>("faces", 2, number);
+    curves.edges.coefficients = read_list<Vec3>("coefficients", 6, vector);
+    curves.faces.coefficients = read_list<Vec3>("coefficients", 6, vector);
+    read_list<double>("weights", 2, [&] { return scan_.number("a weight"); });
+    curves.order = scan_.integer("an order");
+    curves.is_rational = scan_.word() == "t";
+    scan_.word();  // whether it is of high order
+  }
+
+  /// Whether the lists are those of these edges or faces.
+  static bool fits(const CurvesOfFile::Part& given, const NetgenCurves::Part& own, std::int64_t order, bool is_edge) {
+    const std::size_t count = own.order.size();
+    if (given.order.size() != count || given.first.size() != count + 1) return false;
+    const auto all = static_cast<std::int64_t>(given.coefficients.size());
+    for (std::size_t n = 0; n < count; ++n) {
+      if (given.order[n] < 1 || given.order[n] > order || given.first[n] < 0) return false;
+      if (given.first[n] > all - netgen_coefficients(given.order[n], is_edge)) return false;
+    }
+    return true;
+  }
+
+  void take_curves() {
+    const CurvesOfFile& given = *curves_;
+    NetgenCurves curves(raw_.tets, raw_.points.size());
+    const bool is_known = !given.is_rational && given.order >= 2 && given.order <= kMostOrder &&
+                          raw_.mid_nodes.empty() && fits(given.edges, curves.edges, given.order, true) &&
+                          fits(given.faces, curves.faces, given.order, false);
+    if (!is_known) {
+      raw_.notes.emplace_back(
+          "curved elements are taken as they are without: curves are read of tetrahedra of order 2 to "
+          "4 that are all of the mesh, and not rational");
+      return;
+    }
+    for (const bool of_edges : {true, false}) {
+      const CurvesOfFile::Part& from = of_edges ? given.edges : given.faces;
+      NetgenCurves::Part& to = of_edges ? curves.edges : curves.faces;
+      to.order = from.order, to.first = from.first, to.coefficients = from.coefficients;
+    }
+    add_curved_nodes(curves, static_cast<int>(given.order));
+  }
+
+  /// Nodes of edges and faces once, as the first element that has them sees them.
+  void add_curved_nodes(const NetgenCurves& curves, int order) {
+    const TetLattice& lattice = tet_lattice(order);
+    const MfemNumbering numbering(raw_.tets, raw_.points.size(), order);
+    raw_.points.resize(numbering.size());
+    std::vector<bool> is_placed(numbering.size(), false);
+    std::vector<VertexIndex> nodes(lattice.size());
+    for (TetIndex t = 0; t < raw_.tets.size(); ++t) {
+      numbering.of_tet(t, nodes);
+      for (std::size_t k = 4; k < nodes.size(); ++k) {
+        if (is_placed[nodes[k]]) continue;
+        is_placed[nodes[k]] = true;
+        std::array<double, 4> at;
+        Vec3 place;
+        for (std::size_t c = 0; c < 4; ++c) {
+          at[c] = static_cast<double>(lattice.weights(k)[c]) / order;
+          place += at[c] * raw_.points[raw_.tets[t][c]];
+        }
+        raw_.points[nodes[k]] = place + curves.added(t, at);
+      }
+      take_nodes_of_tet(nodes, order);
+    }
+  }
+
+  void take_nodes_of_tet(std::span<const VertexIndex> nodes, int order) {
+    if (order == 2) {
+      std::copy_n(nodes.begin() + 4, 6, raw_.mid_nodes.emplace_back().begin());
+      return;
+    }
+    raw_.high_order = static_cast<std::uint32_t>(order);
+    raw_.high_nodes.insert(raw_.high_nodes.end(), nodes.begin() + 4, nodes.end());
   }
 
   void check_indices() const {
@@ -142,6 +290,9 @@ class Netgen {
   const Input& input_;
   Scanner scan_;
   RawMesh raw_;
+  std::optional<CurvesOfFile> curves_;
+  std::vector<std::int64_t> descriptors_;  ///< the number of the edge of each
+  bool has_descriptors_ = false;           ///< segments tell one
 };
 
 }  // namespace

@@ -47,6 +47,8 @@ Told told_medit(const FileHead& head);
 RawMesh read_medit(const Input& input);
 Told told_medit_binary(const FileHead& head);
 RawMesh read_medit_binary(const Input& input);
+Told told_mfem(const FileHead& head);
+RawMesh read_mfem(const Input& input);
 Told told_abaqus(const FileHead& head);
 RawMesh read_abaqus(const Input& input);
 Told told_nastran(const FileHead& head);

@@ -32,6 +32,7 @@ void write_msh2(MeshOutput& out, const MeshParts& mesh);
 void write_simnibs(MeshOutput& out, const MeshParts& mesh);
 void write_medit(MeshOutput& out, const MeshParts& mesh);
 void write_medit_binary(MeshOutput& out, const MeshParts& mesh);
+void write_mfem(MeshOutput& out, const MeshParts& mesh);
 void write_abaqus(MeshOutput& out, const MeshParts& mesh);
 void write_nastran(MeshOutput& out, const MeshParts& mesh);
 void write_unv(MeshOutput& out, const MeshParts& mesh);

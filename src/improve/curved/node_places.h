@@ -16,12 +16,17 @@
 
 namespace octafront::curved {
 
-/// A place between corners, by its barycentric coordinates times p.
+/// A place between corners, by its barycentric coordinates times p; `at` without.
 template <std::size_t kCorners>
 struct NodePlace {
   std::array<double, kCorners> weights{};
   double order = 1;
 
+  std::array<double, kCorners> at() const {
+    std::array<double, kCorners> at;
+    for (std::size_t i = 0; i < kCorners; ++i) at[i] = weights[i] / order;
+    return at;
+  }
   Vec3 mean_of(std::span<const Vec3> corners) const {
     Vec3 sum = weights[0] * corners[0];
     for (std::size_t i = 1; i < kCorners; ++i) sum += weights[i] * corners[i];
