@@ -578,8 +578,9 @@ function choose(element) {
 // --- saving
 
 const format = () => now.about.formats.find((f) => f.name === byId("format").value);
-/** Some of Gmsh's are known by their content alone; others have a folder. */
-const endingOf = ({ endings, one_file }) => (!endings && one_file ? ".msh" : endings.split(" ")[0]);
+/** Some are known by their content alone; others have a folder. */
+const BY_CONTENT = { msh22: ".msh", simnibs: ".msh", mfem: ".mesh" };
+const endingOf = ({ name, endings }) => BY_CONTENT[name] ?? endings.split(" ")[0];
 const targetName = () => stem() + (now.about ? endingOf(format()) : ".msh");
 
 function download(name, blob) {
