@@ -86,8 +86,8 @@ class Server {
   void run() {
     std::signal(SIGPIPE, SIG_IGN);
     ::fcntl(STDIN_FILENO, F_SETFL, ::fcntl(STDIN_FILENO, F_GETFL) | O_NONBLOCK);
-    const std::atomic<bool>& interrupted = install_interrupt_handler();
-    while (!interrupted && is_heard_) {
+    const std::atomic<bool>& is_stopped = install_interrupt_handler();
+    while (!is_stopped && is_heard_) {
       wait_for_something();
       listen();
       go_on();

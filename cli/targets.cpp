@@ -16,12 +16,9 @@
 #include <cstdio>
 #include <fstream>
 #include <optional>
-#include <ranges>
 
 #include <fmt/core.h>
 #include <unistd.h>
-#ifdef _WIN32
-#endif
 
 namespace octafront::cli {
 
@@ -226,11 +223,11 @@ void write_mesh_targets(Session& session, const TetMesh& as_it_is, std::span<con
 void recommend_second_order(const Arguments& a, Report& report) {
   constexpr std::array kOfStructures{"abaqus", "nastran", "ansys", "lsdyna", "febio", "unv", "med"};
   if (report.true_volume == 0 || a.options.order > 1 || report.stages.empty()) return;
-  const auto is_for_structures = [&](std::size_t i) {
-    return std::ranges::find(kOfStructures, format_for(a.meshes[i].string(), options_of(a, i)).name) !=
-           kOfStructures.end();
-  };
-  if (std::ranges::none_of(std::views::iota(std::size_t{0}, a.meshes.size()), is_for_structures)) return;
+  bool is_for_structures = false;
+  for (std::size_t i = 0; i < a.meshes.size(); ++i)
+    is_for_structures |= std::ranges::find(kOfStructures, format_for(a.meshes[i].string(), options_of(a, i)).name) !=
+                         kOfStructures.end();
+  if (!is_for_structures) return;
   report.stages.back().note(
       {"first-order",
        "these are elements of first order, which are 6 to 29 % off in the stress of notches where a tenth of the "

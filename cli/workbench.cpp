@@ -1,13 +1,12 @@
 #include "workbench.h"
 
 #include <octafront/error.h>
-#include <octafront/io.h>
 
 #include "failure.h"
 #include "plan_run.h"
-#include "schema.h"
 #include "terminal.h"
 #include "text.h"
+#include "workbench_calls.h"
 #include "workbench_files.h"
 
 #include <array>
@@ -39,27 +38,6 @@ constexpr std::size_t kThreads = 24;  // a page that is open, and each run, has 
 /// For how long no page may be there: one that is loaded anew is back sooner.
 constexpr std::chrono::seconds kPatience{6};
 
-/// What the page may run: tools of the door for agents, and what the page alone needs of them.
-const std::vector<Tool>& workbench_tools() {
-  using Output = Tool::Output;
-  static const std::vector<Tool> all = [] {
-    using Input = Tool::Input;
-    std::vector<Tool> known{{"info", "", "", "info", Output::kNone, Input::kOne, ""},
-                            {"surface", "", "", "surface", Output::kOne, Input::kSeveral, ""},
-                            {"report", "", "", "report", Output::kOne, Input::kOne, ""}};
-    for (const Tool& tool : tools())
-      if (!std::string_view(tool.command).empty()) known.push_back(tool);
-    return known;
-  }();
-  return all;
-}
-
-/// What a request is refused with.
-struct HttpError {
-  int status;
-  std::string code, message;
-};
-
 std::string text_of(const Json& json) {
   return json.dump(-1, ' ', false, Json::error_handler_t::replace);
 }
@@ -68,16 +46,16 @@ void answer(Response& response, const Json& json, int status = 200) {
   response.status = status;
   response.set_content(text_of(json), "application/json");
 }
-void answer_error(Response& response, const HttpError& error) {
-  answer(response, {{"error", {{"kind", "request"}, {"code", error.code}, {"message", error.message}}}}, error.status);
+void answer_error(Response& response, const RefusedRequest& error) {
+  answer(response, in_json(error), error.status);
 }
-httplib::Server::HandlerResponse answer_handled(Response& response, const HttpError& error) {
+httplib::Server::HandlerResponse answer_handled(Response& response, const RefusedRequest& error) {
   answer_error(response, error);
   return httplib::Server::HandlerResponse::Handled;
 }
 
 /// What the library itself refuses.
-HttpError error_of_status(int status) {
+RefusedRequest error_of_status(int status) {
   if (status == 413) return {status, "too_large", "that is more than is taken"};
   if (status == 404) return {status, "not_found", "nothing is served here"};
   return {status, "bad_request", fmt::format("no request that is understood ({})", status)};
@@ -123,15 +101,6 @@ std::filesystem::path workbench_page() {
       "the page of the workbench, octafront-ui.html, is not beside this program: scripts/ui.sh makes it (Node and "
       "npm); "
       "the variable OCTAFRONT_UI_PAGE names it elsewhere");
-}
-
-/// Outputs are plain names, in the folder of the run. Throws HttpError.
-void check_outputs(const Json& arguments) {
-  if (!arguments.is_object() || !arguments.contains("output")) return;
-  const Json& output = arguments["output"];
-  for (const Json& name : output.is_array() ? output : Json::array({output}))
-    if (!name.is_string() || !is_plain_name(name.get<std::string>()))
-      throw HttpError{400, "bad_name", "an output is the name of a file, without a folder"};
 }
 
 class Workbench {
@@ -182,7 +151,7 @@ class Workbench {
     server_.set_exception_handler([](const Request&, Response& response, std::exception_ptr thrown) {
       try {
         std::rethrow_exception(thrown);
-      } catch (const HttpError& error) {
+      } catch (const RefusedRequest& error) {
         answer_error(response, error);
       } catch (...) {
         answer_error(response, {500, "internal", current_failure().message});
@@ -196,7 +165,7 @@ class Workbench {
     server_.Get(at,
                 [this](const Request&, Response& response) { send_text(response, page_, "text/html; charset=utf-8"); });
     server_.Get(at + "about", [this](const Request&, Response& response) {
-      send_text(response, text_of(about()), "application/json");
+      send_text(response, text_of(about_workbench(app_, file_)), "application/json");
     });
     server_.Get(at + "alive", [this](const Request&, Response& response) { stay(response); });
     server_.Get(at + "made/(\\d{1,9})/(.+)",
@@ -218,26 +187,26 @@ class Workbench {
   }
 
   /// Nobody else's page, under whatever name it knows this machine, and nobody without the token.
-  std::optional<HttpError> refusal_of(const Request& request) const {
+  std::optional<RefusedRequest> refusal_of(const Request& request) const {
     const std::string host = request.get_header_value("Host");
     if (request.get_header_value_count("Host") != 1 ||
         (host != fmt::format("127.0.0.1:{}", port_) && host != fmt::format("localhost:{}", port_)))
-      return HttpError{403, "bad_host", "requests name the address that was printed"};
+      return RefusedRequest{403, "bad_host", "requests name the address that was printed"};
     const bool is_first_look = request.method == "GET" && is_same_secret(request.path, "/open/" + key_);
     if (!is_first_look &&
         !is_same_secret(std::string_view(request.path).substr(0, token_.size() + 2), "/" + token_ + "/"))
-      return HttpError{403, "no_token", "requests have the token of the address that was printed"};
+      return RefusedRequest{403, "no_token", "requests have the token of the address that was printed"};
     const std::string site = request.get_header_value("Sec-Fetch-Site");
     const bool is_typed = site == "none" && request.method == "GET";
     if ((request.has_header("Origin") && request.get_header_value("Origin") != "http://" + host) ||
         (!site.empty() && site != "same-origin" && !is_typed && !is_first_look))
-      return HttpError{403, "bad_origin", "requests come from the page that is served here"};
+      return RefusedRequest{403, "bad_origin", "requests come from the page that is served here"};
     return std::nullopt;
   }
 
   /// The browser's command line can be seen by others; what stands there is good for one look.
   void open_once(const std::string& at, Response& response) {
-    if (was_opened_.exchange(true)) throw HttpError{403, "no_token", "this address was good for one look"};
+    if (was_opened_.exchange(true)) throw RefusedRequest{403, "no_token", "this address was good for one look"};
     response.set_redirect(at, 303);
   }
 
@@ -282,15 +251,10 @@ class Workbench {
     return scratch_.path() / ("run-" + run);
   }
 
-  static Json file_in_json(const std::filesystem::path& file, const std::string& name) {
-    std::error_code ignored;
-    return {{"name", name}, {"path", file.string()}, {"bytes", std::filesystem::file_size(file, ignored)}};
-  }
-
   void take_upload(const Request& request, Response& response, const ContentReader& content) {
     const std::string name = request.matches[1];
     if (!is_plain_name(name))
-      throw HttpError{400, "bad_name", "a file has a name without folders, of at most 200 bytes"};
+      throw RefusedRequest{400, "bad_name", "a file has a name without folders, of at most 200 bytes"};
     const std::filesystem::path file = scratch_.path() / "uploads" / name;
     std::ofstream out(file, std::ios::binary | std::ios::trunc);
     std::size_t total = 0;
@@ -301,14 +265,15 @@ class Workbench {
     if (is_whole && out.good()) return answer(response, file_in_json(file, name));
     std::error_code ignored;
     std::filesystem::remove(file, ignored);
-    throw HttpError{400, "not_whole", "the file did not come in whole, or there is no room for it"};
+    throw RefusedRequest{400, "not_whole", "the file did not come in whole, or there is no room for it"};
   }
 
   void send_made(const Request& request, Response& response) const {
     const std::filesystem::path folder = folder_of(request.matches[1]);
     const std::string name = request.matches[2];
     const std::vector<std::string> there = files_below(folder);
-    if (std::ranges::find(there, name) == there.end()) throw HttpError{404, "not_found", "no run has left this file"};
+    if (std::ranges::find(there, name) == there.end())
+      throw RefusedRequest{404, "not_found", "no run has left this file"};
     const auto in = std::make_shared<std::ifstream>(folder / name, std::ios::binary);
     response.set_content_provider(
         std::filesystem::file_size(folder / name), "application/octet-stream",
@@ -320,20 +285,6 @@ class Workbench {
         });
   }
 
-  // What there is.
-
-  Json about() const {
-    Json formats = Json::array();
-    for (const FormatInfo& info : known_formats())
-      if (info.writes_mesh)
-        formats.push_back(
-            {{"name", info.name}, {"title", info.title}, {"endings", info.endings}, {"one_file", info.one_file}});
-    Json found{{"version", OCTAFRONT_VERSION}, {"formats", formats}};
-    found["options"] = schema_of(app_)["$defs"]["options_of_mesh"]["properties"];
-    found["file"] = file_.empty() ? Json() : file_in_json(file_, file_.filename().string());
-    return found;
-  }
-
   // Runs.
 
   static std::string read_call(const ContentReader& content) {
@@ -342,7 +293,7 @@ class Workbench {
       text.append(data, size);
       return text.size() <= kLongestCall;
     });
-    if (!is_whole) throw HttpError{413, "too_large", fmt::format("a call has at most {} bytes", kLongestCall)};
+    if (!is_whole) throw RefusedRequest{413, "too_large", fmt::format("a call has at most {} bytes", kLongestCall)};
     return text;
   }
 
@@ -355,38 +306,23 @@ class Workbench {
   };
 
   void take_call(Response& response, const ContentReader& content) {
-    const Json call = parsed(read_call(content));
-    const auto tool = std::ranges::find_if(workbench_tools(), [&](const Tool& t) { return call["tool"] == t.name; });
-    if (tool == workbench_tools().end()) throw HttpError{400, "no_tool", "there is no tool of this name"};
-    check_outputs(call["arguments"]);
+    const ToolCall call = call_of(read_call(content));
     if (++runs_ > kMostRuns) {
       --runs_;
-      throw HttpError{503, "busy", fmt::format("{} runs go on already", kMostRuns)};
+      throw RefusedRequest{503, "busy", fmt::format("{} runs go on already", kMostRuns)};
     }
     const std::shared_ptr<Running> running(new Running, [this](Running* ended) { delete ended, --runs_; });
-    running->number = std::to_string(++last_run_), running->tool = &*tool, running->arguments = call["arguments"];
+    running->number = std::to_string(++last_run_), running->tool = call.tool, running->arguments = call.arguments;
     std::vector<std::filesystem::path> folders{scratch_.add("run-" + running->number), scratch_.path()};
     if (!file_.empty()) folders.push_back(file_.parent_path());
     running->folders = std::make_unique<Folders>(folders);
     try {
       start(*running);
     } catch (const BadCall& bad) {
-      return answer(response, answer_of(bad, *tool, running->arguments, *running->folders), 400);
+      return answer(response, answer_of(bad, *running->tool, running->arguments, *running->folders), 400);
     }
     response.set_chunked_content_provider(
         "application/x-ndjson", [this, running](std::size_t, DataSink& sink) { return go_on(*running, sink); });
-  }
-  static Json parsed(const std::string& text) {
-    constexpr int kDeepest = 64;
-    bool is_too_deep = false;
-    const auto deep = [&](int depth, Json::parse_event_t, Json&) {
-      return !(is_too_deep = is_too_deep || depth > kDeepest);
-    };
-    Json call = Json::parse(text, deep, false);
-    if (is_too_deep || !call.is_object() || !call.contains("tool") || !call["tool"].is_string() ||
-        !call.contains("arguments") || !call["arguments"].is_object())
-      throw HttpError{400, "bad_json", "a call is a JSON object with a tool and its arguments"};
-    return call;
   }
   void start(Running& running) {
     Plan plan = plan_of(*running.tool, running.arguments, app_, *running.folders, {});
@@ -416,15 +352,8 @@ class Workbench {
   }
 
   Json outcome(const Running& running) const {
-    Json told = answer_of(*running.tool, running.arguments, running.run->results(), *running.folders);
-    Json done{
-        {"status", told["status"]}, {"reports", Json::array()}, {"files", Json::array()}, {"run", running.number}};
-    for (const char* key : {"error", "next", "sources"})
-      if (told.contains(key)) done[key] = told[key];
-    for (const RunResult& result : running.run->results()) done["reports"].push_back(result.report);
-    const std::filesystem::path folder = folder_of(running.number);
-    for (const std::string& name : files_below(folder)) done["files"].push_back(file_in_json(folder / name, name));
-    return {{"done", done}};
+    const RunOfTool run{*running.tool, running.arguments, running.number, folder_of(running.number)};
+    return {{"done", outcome_of(run, running.run->results(), *running.folders)}};
   }
 
   const CLI::App& app_;

@@ -32,6 +32,12 @@ endif()
 # stages, rooms where a mesh spends less than some .2 % of its time) is compiled at -Og in a release: code as small as at -O1's
 # in three quarters of the time, half of that of -O3 (docs/measured/house.md).
 set(light_options $<$<CONFIG:Release>:-Og>)
+# Debian's emscripten does not know that; and a page carries all of it. Without -finline-functions it takes -Os for a wish that
+# templates stay calls: to clear a vector of numbers is a loop over them then, and not only off the hot path, for the linker keeps
+# one copy of each.
+if(EMSCRIPTEN)
+  set(light_options $<$<CONFIG:Release>:-Os> $<$<CONFIG:Release>:-finline-functions>)
+endif()
 
 # octafront_precompile(TARGET OWNER): TARGET shares the precompiled headers of OWNER, which may be itself (and may name
 # more). They are the standard library's, and of others' only what every wing has: good whatever we edit and link.

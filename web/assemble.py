@@ -1,9 +1,8 @@
-"""Puts the npm package and the page together: assemble.py BUILT_FOLDER OUT_FOLDER
+"""Puts the npm package together: assemble.py BUILT_FOLDER OUT_FOLDER
 
-BUILT_FOLDER has octafront-module.js and .wasm, which CMake made. In OUT_FOLDER: package/, octafront-VERSION.tgz as `npm pack`
-makes it, octafront.html. Prints sizes."""
+BUILT_FOLDER has octafront-module.js and .wasm, which CMake made, OUT_FOLDER octafront.html, which web/ui/assemble.py made. In
+OUT_FOLDER: package/, octafront-VERSION.tgz as `npm pack` makes it. Prints sizes."""
 
-import base64
 import gzip
 import io
 import json
@@ -14,35 +13,10 @@ import tarfile
 
 HERE = pathlib.Path(__file__).resolve().parent
 SOURCE = HERE.parent
-ASSETS = SOURCE / "src/report/page/assets"
-SAMPLES = {"bracket": "bracket.stl", "gear": "gear.obj", "head (labels)": "head_labels.nii.gz"}
 
 
 def text(path):
     return path.read_text(encoding="utf-8")
-
-
-def packed(data):
-    """What `unpacked()` of page.js reads."""
-    return base64.b64encode(gzip.compress(data, 9, mtime=0)).decode()
-
-
-def element(name, data, **attributes):
-    more = "".join(f' data-{key}="{value}"' for key, value in attributes.items())
-    return f'<script type="text/plain" id="packed-{name}"{more}>{packed(data)}</script>\n'
-
-
-def page_of(worker, module):
-    before = text(HERE / "page/page.html").replace("/* page.css */", text(HERE / "page/page.css"))
-    scripts = [text(HERE / "engine.js").replace("export ", ""), text(HERE / "page/zip.js")]
-    scripts += [text(ASSETS / f"{name}.js") for name in ("colours", "camera", "surface", "picture", "panels")]
-    scripts.append(text(HERE / "page/page.js"))
-    parts = [before, element("module", module), element("worker", worker.encode())]
-    parts += [element(f"sample-{i}", (SOURCE / "samples" / file).read_bytes(), file=file, title=title)
-              for i, (title, file) in enumerate(SAMPLES.items())]
-    script = "\n".join(scripts)
-    assert "</script" not in script
-    return "".join(parts) + f"<script>\n{script}</script>\n</body>\n</html>\n"
 
 
 def tarball(folder, target):
@@ -59,7 +33,6 @@ def tarball(folder, target):
 def main(built, out):
     module = (built / "octafront-module.wasm").read_bytes()
     worker = text(built / "octafront-module.js") + "\n" + text(HERE / "port.js")
-    page = page_of(worker, module)
     package = out / "package"
     shutil.rmtree(package, ignore_errors=True)
     package.mkdir(parents=True)
@@ -69,17 +42,16 @@ def main(built, out):
     for name in ("LICENSE", "NOTICE"):
         shutil.copy(SOURCE / name, package / name)
     (package / "licenses").mkdir()
-    for name in ("fmt.txt", "nlohmann_json.txt", "z.txt", "emscripten.txt"):
+    for name in ("fmt.txt", "nlohmann_json.txt", "z.txt", "emscripten.txt", "cli11.txt", "three.txt"):
         shutil.copy(SOURCE / "licenses" / name, package / "licenses" / name)
     (package / "octafront-worker.js").write_text(worker, encoding="utf-8")
     (package / "octafront.wasm").write_bytes(module)
-    (package / "octafront.html").write_text(page, encoding="utf-8")
-    (out / "octafront.html").write_text(page, encoding="utf-8")
+    shutil.copy(out / "octafront.html", package)
     missing = [name for name in described["files"] if not (package / name).exists()]
     assert not missing, f"package.json lists what there is not: {missing}"
     archive = out / f"octafront-{described['version']}.tgz"
     tarball(package, archive)
-    for path in (package / "octafront.wasm", package / "octafront-worker.js", out / "octafront.html"):
+    for path in (package / "octafront.wasm", package / "octafront-worker.js"):
         data = path.read_bytes()
         print(f"{path.name}: {len(data) / 1e6:.2f} MB, {len(gzip.compress(data, 9)) / 1e6:.2f} MB gzip")
     print(f"{archive.name}: {archive.stat().st_size / 1e6:.2f} MB")

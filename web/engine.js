@@ -1,5 +1,6 @@
 // Parts and meshes, each in a worker of its own: so a run can be cancelled at any time, and the memory of what is closed
-// is given back. Where the worker and the module come from, engine.js does not know: octafront.js and octafront.html do.
+// is given back. Where the worker and the module come from, engine.js does not know: octafront.js does.
+// The workbench alone (web/ui/module.js) has its runs in such workers.
 
 /** What failed: `status` as of the command line (2 options, 3 input, 4 meshing, 6 memory), `report` the evidence. */
 export class OctafrontError extends Error {
@@ -14,7 +15,7 @@ export class OctafrontError extends Error {
 const aborted = (signal) => signal.reason ?? new DOMException("cancelled", "AbortError");
 
 /** A worker and the calls that wait for it. */
-class Room {
+export class Room {
   constructor(worker) {
     this.worker = worker;
     this.waiting = new Map();

@@ -103,6 +103,7 @@ export class OctafrontError extends Error {
   readonly report: Report;
 }
 
-/** Reads surfaces (STL, OBJ, OFF, PLY, ...), images (NIfTI, NRRD, ...) and meshes; of several each is a region. Defects are mended. */
+/** Reads surfaces (STL, OBJ, OFF, PLY, ...), images (NIfTI, NRRD, ...) and meshes; of several each is a region. Defects are mended. `options`: what
+ *  it will be meshed with; sizes say where bodies that nearly touch come together. */
 export function open(files: Input | Input[], intake?: IntakeOptions, given?: Given & { options?: MeshOptions }): Promise<Part>;
 export function info(): Promise<Info>;

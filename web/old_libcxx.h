@@ -100,17 +100,108 @@ template <class Range, class T>
 constexpr void replace(Range&& range, const T& old, const T& now) {
   std::replace(begin(range), end(range), old, now);
 }
+template <class It, class T, class Compare = octafront_less, class Projection = octafront_identity>
+constexpr It lower_bound(It first, It last, const T& value, Compare compare = {}, Projection of = {}) {
+  return std::partition_point(first, last, [&](const auto& item) { return invoke(compare, invoke(of, item), value); });
+}
+template <class Range, class T, class Compare = octafront_less, class Projection = octafront_identity>
+constexpr auto lower_bound(Range&& range, const T& value, Compare compare = {}, Projection of = {}) {
+  return ranges::lower_bound(begin(range), end(range), value, compare, of);
+}
+template <class Range, class T, class Compare = octafront_less, class Projection = octafront_identity>
+constexpr auto upper_bound(Range&& range, const T& value, Compare compare = {}, Projection of = {}) {
+  return std::partition_point(begin(range), end(range),
+                              [&](const auto& item) { return !invoke(compare, value, invoke(of, item)); });
+}
 template <class Range, class T>
 constexpr bool binary_search(Range&& range, const T& value) {
   return std::binary_search(begin(range), end(range), value);
 }
-template <class Range, class T>
-constexpr auto lower_bound(Range&& range, const T& value) {
-  return std::lower_bound(begin(range), end(range), value);
+template <class It>
+struct octafront_subrange {
+  It first, last;
+  constexpr It begin() const { return first; }
+  constexpr It end() const { return last; }
+  constexpr bool empty() const { return first == last; }
+  constexpr auto size() const { return static_cast<size_t>(last - first); }
+};
+template <class Range, class T, class Compare = octafront_less, class Projection = octafront_identity>
+constexpr auto equal_range(Range&& range, const T& value, Compare compare = {}, Projection of = {}) {
+  return octafront_subrange<decltype(begin(range))>{ranges::lower_bound(range, value, compare, of),
+                                                    ranges::upper_bound(range, value, compare, of)};
 }
 template <class A, class B, class Out>
 constexpr Out set_intersection(A&& a, B&& b, Out out) {
   return std::set_intersection(begin(a), end(a), begin(b), end(b), out);
+}
+template <class A, class B>
+constexpr bool includes(A&& a, B&& b) {
+  return std::includes(begin(a), end(a), begin(b), end(b));
+}
+template <class A, class B>
+constexpr bool equal(A&& a, B&& b) {
+  return std::equal(begin(a), end(a), begin(b), end(b));
+}
+template <class Range, class Out>
+constexpr Out copy(Range&& range, Out out) {
+  return std::copy(begin(range), end(range), out);
+}
+template <class Range, class Out, class Change>
+constexpr Out transform(Range&& range, Out out, Change change) {
+  return std::transform(begin(range), end(range), out, [&](auto&& item) -> decltype(auto) { return invoke(change, item); });
+}
+template <class Range, class Visit>
+constexpr void for_each(Range&& range, Visit&& visit) {
+  for (auto&& item : range) invoke(visit, item);
+}
+template <class Range, class Compare>
+constexpr void push_heap(Range&& range, Compare compare) {
+  std::push_heap(begin(range), end(range), compare);
+}
+template <class Range, class Compare>
+constexpr void pop_heap(Range&& range, Compare compare) {
+  std::pop_heap(begin(range), end(range), compare);
+}
+template <class Range>
+constexpr bool is_sorted(Range&& range) {
+  return std::is_sorted(begin(range), end(range));
+}
+template <class Range>
+constexpr auto min(Range&& range) {
+  return *std::min_element(begin(range), end(range));
+}
+template <class Range>
+constexpr auto max(Range&& range) {
+  return *std::max_element(begin(range), end(range));
+}
+/// Pairs of iterators, and of items.
+template <class Range>
+constexpr auto minmax_element(Range&& range) {
+  return std::minmax_element(begin(range), end(range));
+}
+template <class Range, class Compare = octafront_less, class Projection = octafront_identity>
+constexpr auto minmax(Range&& range, Compare compare = {}, Projection of = {}) {
+  const auto ends = std::minmax_element(begin(range), end(range), octafront_compared(compare, of));
+  return pair(*ends.first, *ends.second);
+}
+template <class Range, class Test>
+constexpr auto partition_point(Range&& range, Test test) {
+  return std::partition_point(begin(range), end(range), test);
+}
+template <class Range, class Test>
+auto stable_partition(Range&& range, Test test) {
+  return std::stable_partition(begin(range), end(range), test);
+}
+template <class Range, class Test>
+constexpr auto adjacent_find(Range&& range, Test test) {
+  return std::adjacent_find(begin(range), end(range), test);
+}
+struct octafront_found {
+  bool found;
+};
+template <class Range>
+constexpr octafront_found next_permutation(Range&& range) {
+  return {std::next_permutation(begin(range), end(range))};
 }
 
 }  // namespace ranges

@@ -5,7 +5,7 @@
 (async () => {
   "use strict";
   const DONE = 0, END = 1, PROGRESS = 2, USAGE = 2, INTERNAL = 1; // octafront_c.h
-  const F64 = 1;
+  const F64 = 1, EVENT_BYTES = 72; // the latter is held by module.cpp
   const port = await openPort();
   let module = null, part = 0, mesh = 0, sizes = 0, watcher = 0, listening = 0, told = { stage: "", at: 0 };
 
@@ -66,7 +66,7 @@
   /** Waits for a job; what it leaves is taken by `take`. Returns its report. */
   function finish(job, take = () => {}) {
     if (!job) throw new Failure(textAt(api("last_error")), INTERNAL);
-    const event = allocated(64);
+    const event = allocated(EVENT_BYTES);
     try {
       told = { stage: "", at: 0 };
       api("job_watch", job, watcher, 0);

@@ -16,7 +16,7 @@ import time
 import unittest
 
 try:
-    from workbench import Page, Program, browser
+    from workbench import Page, Program, axe, browser, serious
 except ImportError:
     print("no python3-selenium here: skipped; scripts/test.sh --all installs it")
     sys.exit(77)
@@ -29,7 +29,6 @@ if "no such file" not in started.stderr:
 
 OCTAFRONT, SAMPLES = pathlib.Path(sys.argv[1]).resolve(), pathlib.Path(sys.argv[2]).resolve()
 HOSTILE = "<img src=x onerror=alert(1)>.stl"
-AXE = "axe-core@4.14.1"
 
 
 class Requests(unittest.TestCase):
@@ -494,11 +493,9 @@ class Workbench(unittest.TestCase):
             self.driver.execute_cdp_cmd("Emulation.clearDeviceMetricsOverride", {})
 
     def test_axe_finds_nothing_serious(self):
-        folder = self.dir / "axe"
-        folder.mkdir()
-        if shutil.which("npm") is None or subprocess.run(["npm", "install", "--ignore-scripts", "--no-audit", "--no-fund", AXE], cwd=folder, capture_output=True, timeout=300).returncode:
+        script = axe(self.dir / "axe")
+        if script is None:
             self.skipTest("npm has no axe-core here")
-        axe = (folder / "node_modules/axe-core/axe.min.js").read_text()
         for size in ((1280, 900), (390, 844)):
             for theme in ("light", "dark"):
                 page = self.open(size)
@@ -508,18 +505,13 @@ class Workbench(unittest.TestCase):
                 page.click("do-name")
                 page.click("do-walls")
                 page.wait(lambda: "elements" in page.text("estimate"))
-                self.judge(axe, (size, theme, "set up"))
+                self.assertEqual(serious(self.driver, script), [], (size, theme, "set up"))
                 page.click("go")
                 page.idle()
                 page.js("for (const d of document.querySelectorAll('#numbers details')) d.open = true; document.querySelector('[data-axis=y]').click(); document.getElementById('filter').click()")
                 page.click("next")
                 page.settle()
-                self.judge(axe, (size, theme, "looked at"))
-
-    def judge(self, axe, where):
-        self.driver.execute_script(axe)
-        found = self.driver.execute_async_script("const done = arguments[0]; axe.run(document, {resultTypes: ['violations']}).then(r => done(r.violations.map(v => [v.impact, v.id, v.nodes.slice(0, 3).map(n => n.html.slice(0, 120) + ' ' + (n.any[0]?.message ?? ''))])))")
-        self.assertEqual([v for v in found if v[0] in ("serious", "critical")], [], where)
+                self.assertEqual(serious(self.driver, script), [], (size, theme, "looked at"))
 
 
 def pictures(folder):

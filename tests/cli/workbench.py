@@ -1,6 +1,7 @@
 """`octafront ui` and its page in Chromium, as tests and pictures drive them."""
 import pathlib
 import re
+import shutil
 import subprocess
 import time
 
@@ -27,14 +28,32 @@ class Program:
         return status
 
 
-def browser(downloads, width=1280, height=900):
+AXE = "axe-core@4.14.1"
+
+
+def axe(folder):
+    """The script of axe-core, which npm puts into a new folder; None: it has none here."""
+    folder.mkdir()
+    if shutil.which("npm") is None or subprocess.run(["npm", "install", "--ignore-scripts", "--no-audit", "--no-fund", AXE], cwd=folder, capture_output=True, timeout=300).returncode:
+        return None
+    return (folder / "node_modules/axe-core/axe.min.js").read_text()
+
+
+def serious(driver, script):
+    """What axe-core finds that is serious or worse: [impact, rule, elements]."""
+    driver.execute_script(script)
+    found = driver.execute_async_script("const done = arguments[0]; axe.run(document, {resultTypes: ['violations']}).then(r => done(r.violations.map(v => [v.impact, v.id, v.nodes.slice(0, 3).map(n => n.html.slice(0, 120) + ' ' + (n.any[0]?.message ?? ''))])))")
+    return [violation for violation in found if violation[0] in ("serious", "critical")]
+
+
+def browser(downloads, width=1280, height=900, logs=("browser",)):
     options = Options()
     options.binary_location = "/usr/bin/chromium"
     # Root may not use the sandbox, and containers have little shared memory.
     for argument in ("--headless=new", "--no-sandbox", "--disable-dev-shm-usage", "--use-angle=swiftshader",
                      "--enable-unsafe-swiftshader", "--hide-scrollbars", f"--window-size={width},{height}"):
         options.add_argument(argument)
-    options.set_capability("goog:loggingPrefs", {"browser": "ALL"})
+    options.set_capability("goog:loggingPrefs", {log: "ALL" for log in logs})
     driver = webdriver.Chrome(service=Service("/usr/bin/chromedriver"), options=options)
     driver.set_script_timeout(60)
     driver.execute_cdp_cmd("Browser.setDownloadBehavior", {"behavior": "allow", "downloadPath": str(pathlib.Path(downloads).resolve())})

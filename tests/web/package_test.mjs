@@ -38,7 +38,7 @@ const CASES = [
 ];
 for (const [names, options] of CASES) {
   test(`the same mesh as the native program: ${names} ${JSON.stringify(options)}`, async () => {
-    const part = await open(names.map(sample)), mesh = await part.mesh(options);
+    const part = await open(names.map(sample), {}, { options }), mesh = await part.mesh(options);
     const expected = nativeReport(names, options);
     assert.equal(mesh.report.hash, expected.hash);
     assert.equal(mesh.report.tets, expected.tets);
@@ -81,7 +81,7 @@ test("arrays and names that the types promise are there", async () => {
   }
 });
 
-test("every format that can be written is, and read again by the native program where it reads it", async () => {
+test("every format that can be written is, byte for byte as by the native program, and read again by it where it reads it", async () => {
   const { formats } = await info();
   const part = await open(sample("bracket.stl")), mesh = await part.mesh({ size: 6 });
   const writable = formats.filter((format) => format.writes_mesh);
@@ -95,6 +95,9 @@ test("every format that can be written is, and read again by the native program 
       mkdirSync(dirname(join(folder, file.name)), { recursive: true });
       writeFileSync(join(folder, file.name), file.data);
     }
+    mkdirSync(join(folder, "native"));
+    native("mesh", join(OCTAFRONT_SAMPLES, "bracket.stl"), "--size", "6", "-q", "--format", format.name, "-o", join(folder, "native", "part" + ending));
+    for (const file of files) assert.ok(readFileSync(join(folder, "native", file.name)).equals(Buffer.from(file.data)), `${format.name}: ${file.name}`);
     if (!format.reads_mesh) continue;
     const target = join(folder, "again.vtu");
     const main = files.find((file) => file.name === "part" + ending) ?? files[0];

@@ -2,6 +2,7 @@
 
 const NO_JOB = {
   by: "auto", finer: 0, size: "", elements: "50000", order: "1",
+  patches: true, // a surface is parted at sharp edges
   names: [], // {name, places}
   sizes: [], // {places, size}
   walls: [], // places that get layers
@@ -53,7 +54,7 @@ function optionsOf(job, isCad) {
   if (job.by === "elements") options.elements = positive(job.elements, "the number of elements");
   if (job.by === "auto" && job.finer !== 0) options["automatic-factor"] = Number((2 ** (-job.finer / 5)).toPrecision(3));
   if (job.order !== "1") options.order = job.order;
-  if (!isCad) options.patches = true;
+  if (!isCad && job.patches) options.patches = true;
   const sizes = job.sizes.flatMap(({ places, size }) => places.map((p) => `${p.name}=${positive(size, "a size")}`));
   if (sizes.length) options["size-of"] = sizes;
   if (job.walls.length) {

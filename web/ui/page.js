@@ -99,7 +99,7 @@ async function readInput(inputs, options, given) {
 async function surfaceOf(left, name, { signal }) {
   const file = left.files.find((one) => one.name === name), MOST_BYTES = 50 * MOST_TRIANGLES;
   if (file.bytes > MOST_BYTES) throw tooLarge();
-  const surface = readSurface(await (await fetch(`made/${left.run}/${name}`, { signal })).arrayBuffer());
+  const surface = readSurface(await (await engine.made(left.run, name, { signal })).arrayBuffer());
   return { ...surface, report: left.reports[0] };
 }
 const tooLarge = () => new Error(`the surface has more than ${grouped(MOST_TRIANGLES)} triangles: more than a page can show. \`octafront mesh\` takes it; \`octafront picture\` draws it.`);
@@ -291,6 +291,8 @@ function showJob() {
   for (const row of document.querySelectorAll("[data-by]")) row.hidden = row.dataset.by !== job.by;
   for (const [id, value] of [["finer", String(job.finer)], ["elements", job.elements], ["size", job.size], ["order", job.order], ["layers-n", job.layers.n], ["layers-first", job.layers.first], ["layers-growth", job.layers.growth]]) if (byId(id) !== document.activeElement || byId(id).value !== value) byId(id).value = value;
   byId("layers").hidden = job.walls.length === 0;
+  byId("patches-row").hidden = isCad();
+  byId("patches").checked = job.patches;
   for (const field of byId("options").querySelectorAll("[data-option]")) {
     const value = job.more[field.dataset.option];
     if (field.type === "checkbox") field.checked = value === true;
@@ -350,7 +352,7 @@ async function reread() {
 
 // --- what it will take
 
-let foreseeing = null;
+let foreseeing = null; // null: what is shown holds
 function foresee() {
   foreseeing?.abort();
   const mine = (foreseeing = new AbortController()), box = byId("estimate");
@@ -366,7 +368,15 @@ function foresee() {
       if (!mine.signal.aborted) box.textContent = brief(shown(error.message), 300);
     }
     box.removeAttribute("aria-busy");
+    if (foreseeing === mine) foreseeing = null;
   }, PAUSE);
+}
+/** Of options that were changed since nothing is known. */
+function dropForesight() {
+  if (!foreseeing) return;
+  foreseeing.abort();
+  foreseeing = now.expected = null;
+  byId("estimate").replaceChildren();
 }
 function showPlan({ reports: [report], sources = [] }) {
   const { expected_tets: tets, seconds: time, memory_bytes: memory, smallest_size: least, largest_size: most } = report.dry_run;
@@ -398,10 +408,10 @@ function dropMesh() {
 
 async function makeMesh() {
   const made = await work("meshing", async (given) => {
-    foreseeing?.abort();
+    dropForesight();
     const options = optionsOf(history.now, isCad()), isShown = !(now.expected > MOST_SHOWN);
     const left = await engine.run("mesh", { input: inputPaths(), output: "mesh.msh", options: { ...options, ...(isShown ? { report: "report.html" } : {}) } }, given);
-    return takeMesh(left, given);
+    return takeMesh(left, given, asCommand(inputNames(), options, targetName()));
   });
   if (made) showMesh(made);
 }
@@ -421,15 +431,19 @@ async function lookAtFile() {
   byId("step-look").hidden = false;
   showMesh(made);
 }
-async function takeMesh(left, given) {
+async function takeMesh(left, given, command = null) {
   given.progress?.("unpacking the mesh", null);
   const made = { run: left.run, report: left.reports[0], file: left.files.find((file) => file.name === "mesh.msh"), text: null, mesh: null };
   const written = left.files.find((file) => file.name === "report.html"), MOST_BYTES = 4e8;
   if (!written || written.bytes > MOST_BYTES) return made;
-  made.text = await (await fetch(`made/${left.run}/report.html`, { signal: given.signal })).text();
+  made.text = await (await engine.made(left.run, "report.html", given)).text();
   const page = new DOMParser().parseFromString(made.text, "text/html");
   takeFacts(JSON.parse(page.getElementById("facts").textContent));
-  made.report = JSON.parse(page.getElementById("report").textContent);
+  // The job as it is written by hand, and files by their names: the folders of the run are nobody's.
+  const told = page.getElementById("report").textContent, inJson = (text) => JSON.stringify(text).slice(1, -1), report = JSON.parse(told);
+  const plain = now.inputs.reduce((text, { path, name }) => text.replaceAll(inJson(path), inJson(name)), JSON.stringify({ ...report, command_line: command ?? report.command_line }));
+  made.report = JSON.parse(plain);
+  made.text = made.text.replace(told, () => plain.replaceAll("<", "\\u003c"));
   made.mesh = await decodeMesh(page);
   return made;
 }
@@ -564,7 +578,9 @@ function choose(element) {
 // --- saving
 
 const format = () => now.about.formats.find((f) => f.name === byId("format").value);
-const endingOf = ({ name, endings }) => (name === "msh22" ? ".msh" : endings.split(" ")[0]);
+/** Some are known by their content alone; others have a folder. */
+const BY_CONTENT = { msh22: ".msh", simnibs: ".msh", mfem: ".mesh" };
+const endingOf = ({ name, endings }) => BY_CONTENT[name] ?? endings.split(" ")[0];
 const targetName = () => stem() + (now.about ? endingOf(format()) : ".msh");
 
 function download(name, blob) {
@@ -673,6 +689,8 @@ function listenToFiles() {
   addEventListener("dragover", over(true));
   addEventListener("dragleave", over(false));
   addEventListener("drop", (event) => (over(false)(event), openFiles([...event.dataTransfer.files])));
+  byId("samples").hidden = engine.samples.length === 0;
+  byId("samples").append(...engine.samples.map(({ title, file }) => make("button", { type: "button", onclick: async () => openFiles([await file()]) }, title)));
 }
 
 function listenToControls() {
@@ -688,6 +706,7 @@ function listenToControls() {
   each("[name=shown]", () => showWhat(chosen("shown")));
   each("[name=language]", showRepeat);
   on("finer", "change", (event) => change({ finer: Number(event.target.value) }));
+  on("patches", "change", (event) => change({ patches: event.target.checked }));
   for (const id of ["elements", "size", "order"]) on(id, "change", (event) => change({ [id]: event.target.value }));
   for (const [id, key] of [["layers-n", "n"], ["layers-first", "first"], ["layers-growth", "growth"]]) on(id, "change", (event) => change({ layers: { ...history.now.layers, [key]: event.target.value } }));
   on("quantity", "change", (event) => {
@@ -723,6 +742,8 @@ function listenToTheme() {
 }
 
 async function start() {
+  byId("takes").textContent = engine.takes;
+  byId("where").textContent = engine.where;
   listenToTheme();
   listenToFiles();
   listenToControls();

@@ -1,27 +1,16 @@
-// --- server.js: what the page asks of `octafront ui`. All addresses are below that of the page, which has the token.
-
-/** What went wrong, in words; `report` is that of the run, if there is one. */
-class RunError extends Error {
-  constructor(error, answer = {}) {
-    super(error.message);
-    Object.assign(this, { code: error.code, kind: error.kind, next: answer.next ?? [], report: answer.reports?.[0] });
-  }
-}
+// --- server.js: the engine behind `octafront ui`. All addresses are below that of the page, which has the token.
 
 const engine = {
+  takes: "STEP, STL, OBJ, NIfTI, a mesh …",
+  where: "on this machine: nothing leaves it.",
+  samples: [],
+
   async about() {
     return (await asked("about")).json();
   },
-
-  /** Brings a file to the program: {name, path, bytes}. */
   async upload(file) {
     return (await asked("upload/" + encodeURIComponent(file.name), { method: "PUT", body: file })).json();
   },
-
-  /**
-   * Runs a tool; progress(stage, fraction) hears how far it is, fraction null where that is not known. What it leaves: status,
-   * reports, files {name, path, bytes}, the number of the run. Ends when `signal` does. Throws RunError.
-   */
   async run(tool, given, { signal, progress = () => {} } = {}) {
     const response = await asked("run", { method: "POST", body: JSON.stringify({ tool, arguments: given }), signal });
     const reader = response.body.pipeThrough(new TextDecoderStream()).getReader();
@@ -38,13 +27,9 @@ const engine = {
     if (done.error) throw new RunError(done.error, done);
     return done;
   },
-
-  /** A file that a run has left. */
-  async made(run, name) {
-    return asked(`made/${run}/${name.split("/").map(encodeURIComponent).join("/")}`);
+  async made(run, name, { signal } = {}) {
+    return asked(`made/${run}/${name.split("/").map(encodeURIComponent).join("/")}`, { signal });
   },
-
-  /** The program goes on as long as this is heard; gone() once it is not. */
   async stay(gone) {
     try {
       const reader = (await asked("alive")).body.getReader();

@@ -84,7 +84,8 @@ void require_metrics(std::span<const Metric> metrics, std::size_t count, std::sp
   const double diagonal = points.empty() ? HUGE_VAL : box.diagonal();
   for (const auto& [fault, words] : {std::pair{Fault::kNotPositive, "not positive definite"},
                                      std::pair{Fault::kOutOfRange, "out of range: lengths that no mesh has"}})
-    refuse_those(metrics, points, what, words, [&](const Metric& m) { return fault_of(m, diagonal) == fault; });
+    refuse_those(metrics, points, what, words,
+                 [&, wanted = fault](const Metric& m) { return fault_of(m, diagonal) == wanted; });
 }
 
 BackgroundMetric::BackgroundMetric(const MetricMesh& mesh)

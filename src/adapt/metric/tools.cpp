@@ -141,13 +141,13 @@ double scale_for(const TetMesh& mesh, std::span<const Metric> metrics, double ta
     const double six = six_volumes(mesh.points[t[0]], mesh.points[t[1]], mesh.points[t[2]], mesh.points[t[3]]);
     for (const VertexIndex v : t) volume[v] += six / 24;
   }
-  const auto [most, least] = values_of(bounds);
+  const std::array<double, 2> ends = values_of(bounds);
   const auto reached = [&](double factor) {
     return parallel_sum(volume.size(), [&](std::size_t begin, std::size_t end) {
       double sum = 0;
       for (std::size_t v = begin; v < end; ++v) {
         double determinant = 1;
-        for (const double value : values[v]) determinant *= std::clamp(factor * value, least, most);
+        for (const double value : values[v]) determinant *= std::clamp(factor * value, ends[1], ends[0]);
         sum += volume[v] * std::sqrt(determinant);
       }
       return sum;

@@ -78,14 +78,15 @@ std::vector<double> volumes_of_regions(const SurfaceMesh& complex) {
   // Each is measured from a vertex of its own.
   std::vector<VertexIndex> from(volumes.size(), kNone);
   for (std::size_t t = 0; t < complex.triangles.size(); ++t) {
-    const auto& [a, b, c] = complex.triangles[t];
+    const Triangle& corners = complex.triangles[t];
     const auto [front, behind] = complex.sides_of(t);
     if (front == behind) continue;
     const auto add = [&](std::uint32_t region, double sign) {
       if (region == kNone) return;
-      if (from[region] == kNone) from[region] = a;
+      if (from[region] == kNone) from[region] = corners[0];
       const Vec3 o = complex.points[from[region]];
-      const Vec3 p = complex.points[a] - o, q = complex.points[b] - o, r = complex.points[c] - o;
+      const Vec3 p = complex.points[corners[0]] - o, q = complex.points[corners[1]] - o,
+                 r = complex.points[corners[2]] - o;
       volumes[region] += sign * dot(p, cross(q, r)) / 6;
     };
     add(behind, 1), add(front, -1);

@@ -143,11 +143,14 @@ Row<All> row_at(OptionInfo info, const Field& (*of)(const All&), Field& (*in)(Al
           [in, name = info.name](All& o, const OptionValue& v) { in(o) = Conversion<Field>::taken(name, v); }};
 }
 
-/// `field` maps All, const or not, to the field.
+/// `field` maps All, const or not, to the field; it captures nothing.
 template <class All, class Access>
-Row<All> row_of_field(OptionInfo info, Access field) {
-  using Field = std::remove_cvref_t<decltype(field(std::declval<All&>()))>;
-  return row_at<All, Field>(std::move(info), field, field);
+Row<All> row_of_field(OptionInfo info, Access) {
+  using Field = std::remove_cvref_t<decltype(Access{}(std::declval<All&>()))>;
+  // Clang 14 makes no pointer of a generic one that returns auto&.
+  return row_at<All, Field>(
+      std::move(info), [](const All& all) -> const Field& { return Access{}(all); },
+      [](All& all) -> Field& { return Access{}(all); });
 }
 
 template <class Value>

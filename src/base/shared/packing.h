@@ -21,7 +21,7 @@ class Packer {
   }
   void add_text(std::string_view text) {
     add(static_cast<std::uint64_t>(text.size()));
-    append(std::as_bytes(std::span(text)));
+    append(std::as_bytes(std::span(text.data(), text.size())));
   }
   Bytes& bytes() { return bytes_; }
 

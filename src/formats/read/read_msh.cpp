@@ -18,6 +18,7 @@
 #include <set>
 #include <span>
 #include <string>
+#include <tuple>
 #include <utility>
 
 #include <fmt/core.h>
@@ -142,7 +143,7 @@ class MshPlaces {
   struct Place {
     std::int64_t entity;
     std::vector<std::int64_t> groups;  ///< ascending
-    friend auto operator<=>(const Place&, const Place&) = default;
+    bool operator<(const Place& o) const { return std::tie(entity, groups) < std::tie(o.entity, o.groups); }
   };
   /// A number for it, which stands for the reference until all are known.
   std::int64_t place_of(int dimension, Place place) {

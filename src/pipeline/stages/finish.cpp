@@ -156,20 +156,21 @@ void finish(const Finishing& made) {
 }
 
 void describe(const Finishing& made) {
-  const auto& [domain, input, filled, fins, run] = made;
+  Filled& filled = made.filled;
+  Run& run = made.run;
   Report& report = run.report;
   run.stage("summary", [&](const Stage& stage) {
     const Comm comm = comm_of(filled, run);
     describe(filled.mesh, report, comm);
     require_elements(static_cast<double>(report.tets), "the mesh");
     run.comm().agree(report.hash, "mesh at the end");
-    describe_true_volumes(filled, domain, report);
-    describe_input_volumes(input, filled, report);
+    describe_true_volumes(filled, made.domain, report);
+    describe_input_volumes(made.input, filled, report);
     const SizeOptions& asked = run.options.size;
     const bool is_one_size = asked.size && asked.named.empty() && asked.near.empty() && asked.regions.empty();
     if (is_one_size) describe_needed(filled.boundary.surface, *asked.size, report);
     if (!filled.layers) describe_sizes(filled.mesh, filled.boundary.sizes, report, comm);
-    note_volumes(input, filled, run.options, report, stage);
+    note_volumes(made.input, filled, run.options, report, stage);
     note_least(report, stage, [&](std::uint64_t tet) { return narrow_place_of(made, tet); });
   });
 }

@@ -107,7 +107,9 @@ class Around {
   }
 
   void look_at_edges() {
-    for (const auto& [e, around] : uses_) {
+    for (const auto& use : uses_) {
+      const Edge& e = use.first;
+      const std::vector<std::uint32_t>& around = use.second;
       const Vec3 p = input_.points[e[0]], q = input_.points[e[1]];
       if (distance(center_, closest_point_on_segment(center_, p, q)) > size_) continue;
       for (std::size_t i = 0; i < around.size(); ++i)

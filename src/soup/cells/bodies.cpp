@@ -541,19 +541,19 @@ JoinedWay joined_by(const WayTogether& way, const Joining& joining) {
       if (r != kNone) r = 0;
 
   Patches patches(bodies);
-  Complex complex = complex_of(labelled, [&](std::size_t t, Sides sides) {
+  Complex complex = complex_of(labelled, [&, &soup = joining.all](std::size_t t, Sides sides) {
     const std::uint32_t face = closed.source[arranged.origins_of(t)[0].triangle];
     std::string others;
     if (sides[0] != kNone) {
       // The other side's region, unless that is the body itself.
       const auto [front, back] = cells.sides_of(t);
       for (const std::uint32_t cell : {front, back})
-        if (labelled.region[cell] != all.body[face]) {
+        if (labelled.region[cell] != soup.body[face]) {
           others = "_" + labelled.names[labelled.region[cell]];
           break;
         }
     }
-    return Face{patches.patch_of(all.body[face], all.patch[face], others), all.source[face]};
+    return Face{patches.patch_of(soup.body[face], soup.patch[face], others), soup.source[face]};
   });
   dissolve_imprints(complex, all, misfits, context);
   complex.surface.patch_names = patches.names();
