@@ -34,15 +34,19 @@ class HighOrder {
   void make_good(const RunContext& context) {
     if (nodes_.bent_tets().empty()) return;
     if (nodes_.order() > 3) go_on_from_third_order(context);
+    const std::vector<char> is_on_wall = nodes_.is_on_wall();
+    std::vector<TetIndex> suspects = nodes_.bent_tets();
     for (int round = 0; round < kRoundsOfMoving; ++round) {
       const bool has_moved = round > 0 || nodes_.order() > 3;
-      nodes_.take(raise_worst_elements(mesh_, has_moved ? kLeastScaledJacobian : kWellShaped, walls_, context));
-      const std::vector<std::uint32_t> back = spoiling();
+      const double wanted = has_moved ? kLeastScaledJacobian : kWellShaped;
+      const NodesMoved moved = raise_worst_elements(mesh_, suspects, wanted, is_on_wall, walls_, context);
+      nodes_.take(moved);
+      const std::vector<std::uint32_t> back = spoiling(with_those_at(moved, suspects));
       if (back.empty()) return;
-      go_back(back);
+      suspects = go_back(back);
     }
     settle_tets(
-        nodes_.bent_tets(), [&](TetIndex t) { return is_good(t); },
+        suspects, [&](TetIndex t) { return is_good(t); },
         [&](TetIndex t, std::vector<std::uint32_t>& back) { back.push_back(what_gives_way(t)); },
         [&](const std::vector<std::uint32_t>& back) { return go_back(back); }, context);
   }
@@ -79,13 +83,27 @@ class HighOrder {
     return most / distance(mesh_.points[nodes_.edges().low[e]], mesh_.points[nodes_.edges().high[e]]);
   }
 
-  /// What gives way of each element that is not good, each once, ascending.
-  std::vector<std::uint32_t> spoiling() const {
-    std::vector<char> good(mesh_.tets.size());
-    parallel_for(good.size(), [&](std::size_t t) { good[t] = is_good(static_cast<TetIndex>(t)); });
+  /// And the elements that have nodes that moved, ascending.
+  std::vector<TetIndex> with_those_at(const NodesMoved& moved, const std::vector<TetIndex>& others) const {
+    std::vector<char> has_moved(mesh_.points.size()), is_one(mesh_.tets.size());
+    for (const auto& [node, by] : moved.by) has_moved[node] = 1;
+    for (const TetIndex t : others) is_one[t] = 1;
+    const std::size_t each = mesh_.high_nodes_per_tet();
+    for (std::size_t i = 0; i < mesh_.high_nodes.size(); ++i)
+      if (has_moved[mesh_.high_nodes[i]]) is_one[i / each] = 1;
+    std::vector<TetIndex> all;
+    for (TetIndex t = 0; t < is_one.size(); ++t)
+      if (is_one[t]) all.push_back(t);
+    return all;
+  }
+
+  /// What gives way of each of these elements that is not good, each once, ascending.
+  std::vector<std::uint32_t> spoiling(const std::vector<TetIndex>& tets) const {
+    std::vector<char> good(tets.size());
+    parallel_for(good.size(), [&](std::size_t i) { good[i] = is_good(tets[i]); });
     std::vector<std::uint32_t> back;
-    for (TetIndex t = 0; t < good.size(); ++t)
-      if (!good[t]) back.push_back(what_gives_way(t));
+    for (std::size_t i = 0; i < good.size(); ++i)
+      if (!good[i]) back.push_back(what_gives_way(tets[i]));
     std::ranges::sort(back);
     back.erase(std::unique(back.begin(), back.end()), back.end());
     return back;

@@ -6,7 +6,6 @@
 #include "base/core/parallel.h"
 #include "base/geometry/curved_tet.h"
 #include "base/geometry/tet_lattice.h"
-#include "base/mesh/face_table.h"
 #include "base/mesh/quadratic_nodes.h"
 #include "improve/curved/easing.h"
 
@@ -37,17 +36,17 @@ struct NodeOnWall {
 
 class MovingNodes {
  public:
-  MovingNodes(TetMesh& mesh, double wanted, Walls walls)
+  MovingNodes(TetMesh& mesh, double wanted, const std::vector<char>& is_on_wall, Walls walls)
       : mesh_(mesh),
         lattice_(tet_lattice(mesh.order())),
         wanted_(wanted),
         walls_(walls),
-        each_(mesh.high_nodes_per_tet()) {}
+        each_(mesh.high_nodes_per_tet()),
+        on_wall_(is_on_wall) {}
 
-  NodesMoved run(const RunContext& context) {
-    find_poor();
+  NodesMoved run(std::span<const TetIndex> among, const RunContext& context) {
+    find_poor(among);
     if (poor_.empty()) return {};
-    find_walls();
     gather();
     if (walls_ == Walls::kSlide) take_nodes_on_walls();
     for (int sweep = 0; sweep < kSweepsOfNodes; ++sweep) {
@@ -73,30 +72,18 @@ class MovingNodes {
     return std::span<const VertexIndex>(mesh_.high_nodes).subspan(t * each_, each_);
   }
 
-  void find_poor() {
-    std::vector<double> all(mesh_.tets.size());
-    parallel_for(all.size(), [&](std::size_t t) { all[t] = scaled(static_cast<TetIndex>(t)); });
-    for (TetIndex t = 0; t < all.size(); ++t)
-      if (all[t] < wanted_) poor_.push_back(t);
-    std::ranges::stable_sort(poor_, {}, [&](TetIndex t) { return all[t]; });
-    const auto others = std::ranges::partition_point(poor_, [&](TetIndex t) { return all[t] < kLeastScaledJacobian; });
-    const std::size_t most = static_cast<std::size_t>(others - poor_.begin()) + mesh_.tets.size() / kOthersOneIn;
-    poor_.resize(std::min(poor_.size(), most));
-  }
-
-  void find_walls() {
-    on_wall_.assign(mesh_.points.size(), 0);
-    std::vector<Triangle> walls;
-    for (const auto* faces : {&mesh_.boundary, &mesh_.interfaces})
-      for (const Triangle& t : *faces) walls.push_back(face_key(t));
-    std::ranges::sort(walls);
-    for (TetIndex t = 0; t < mesh_.tets.size(); ++t)
-      for (std::size_t i = 0; i < 4; ++i) {
-        if (!std::ranges::binary_search(walls, face_key(octafront::face_of(mesh_.tets[t], static_cast<int>(i)))))
-          continue;
-        for (std::size_t k = 0; k < each_; ++k)
-          if (lattice_.weights(4 + k)[i] == 0) on_wall_[nodes_of(t)[k]] = 1;
-      }
+  void find_poor(std::span<const TetIndex> among) {
+    std::vector<double> all(among.size());
+    parallel_for(all.size(), [&](std::size_t i) { all[i] = scaled(among[i]); });
+    std::vector<std::uint32_t> poor;
+    for (std::uint32_t i = 0; i < all.size(); ++i)
+      if (all[i] < wanted_) poor.push_back(i);
+    std::ranges::stable_sort(poor, {}, [&](std::uint32_t i) { return all[i]; });
+    const auto others =
+        std::ranges::partition_point(poor, [&](std::uint32_t i) { return all[i] < kLeastScaledJacobian; });
+    const std::size_t most = static_cast<std::size_t>(others - poor.begin()) + mesh_.tets.size() / kOthersOneIn;
+    poor.resize(std::min(poor.size(), most));
+    for (const std::uint32_t i : poor) poor_.push_back(among[i]);
   }
 
   /// The nodes of poor elements, and the elements at each.
@@ -246,7 +233,7 @@ class MovingNodes {
   Walls walls_;
   std::size_t each_;
   std::vector<TetIndex> poor_;  ///< the worst first
-  std::vector<char> on_wall_;
+  const std::vector<char>& on_wall_;
   std::vector<std::uint32_t> place_;                ///< per point: among those that may move
   std::vector<std::pair<VertexIndex, Vec3>> from_;  ///< these, and where they were
   Groups<TetIndex> at_;                             ///< of these
@@ -258,8 +245,9 @@ class MovingNodes {
 
 }  // namespace
 
-NodesMoved raise_worst_elements(TetMesh& mesh, double wanted, Walls walls, const RunContext& context) {
-  return MovingNodes(mesh, wanted, walls).run(context);
+NodesMoved raise_worst_elements(TetMesh& mesh, std::span<const TetIndex> among, double wanted,
+                                const std::vector<char>& is_on_wall, Walls walls, const RunContext& context) {
+  return MovingNodes(mesh, wanted, is_on_wall, walls).run(among, context);
 }
 
 }  // namespace octafront::curved

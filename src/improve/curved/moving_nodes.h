@@ -3,6 +3,7 @@
 #include <octafront/tet_mesh.h>
 
 #include <array>
+#include <span>
 #include <utility>
 #include <vector>
 
@@ -27,11 +28,12 @@ struct NodesMoved {
   std::vector<SlidNode> slid;  ///< ascending by node
 };
 
-/// Moves nodes behind the corners of a mesh of order 3 or 4, at elements whose least Jacobian is less than `wanted` (at
-/// least kLeastScaledJacobian) of the straight one; of those above kLeastScaledJacobian at the worst half percent of
-/// the mesh alone. First those on no wall, by steps along the axes; then, for what is below kLeastScaledJacobian, those
-/// on walls, along the curves and surfaces that the wall's nodes span now. No element becomes worse by a move, as far
-/// as it is below what is wanted. Some milliseconds an element.
-NodesMoved raise_worst_elements(TetMesh& mesh, double wanted, Walls walls, const RunContext& context);
+/// Moves nodes behind the corners of a mesh of order 3 or 4, at elements of `among` whose least Jacobian is less than
+/// `wanted` (at least kLeastScaledJacobian) of the straight one; of those above kLeastScaledJacobian at the worst half
+/// percent of the mesh alone. `is_on_wall`: per point. First those on no wall, by steps along the axes; then, for what
+/// is below kLeastScaledJacobian, those on walls, along the curves and surfaces that the wall's nodes span now. No
+/// element becomes worse by a move, as far as it is below what is wanted. Some milliseconds an element.
+NodesMoved raise_worst_elements(TetMesh& mesh, std::span<const TetIndex> among, double wanted,
+                                const std::vector<char>& is_on_wall, Walls walls, const RunContext& context);
 
 }  // namespace octafront::curved

@@ -66,6 +66,20 @@ void HighNodes::number_nodes() {
   });
 }
 
+std::vector<char> HighNodes::is_on_wall() const {
+  std::vector<char> is(mesh_.points.size());
+  const auto mark = [&](const Triangle& wall) {
+    const auto [a, b, c] = face_key(wall);
+    const auto f = std::ranges::lower_bound(faces_.corners, Triangle{a, b, c}) - faces_.corners.begin();
+    for (std::size_t k = 0; k < nodes_in_face(order_); ++k) is[node_in_face(static_cast<std::uint32_t>(f), k)] = 1;
+    for (const std::uint32_t e : {edges_.find(a, b), edges_.find(a, c), edges_.find(b, c)})
+      for (std::size_t k = 0; k < nodes_in_edge(order_); ++k) is[node_in_edge(e, k)] = 1;
+  };
+  for (const Triangle& wall : mesh_.boundary) mark(wall);
+  for (const Triangle& wall : mesh_.interfaces) mark(wall);
+  return is;
+}
+
 Vec3 HighNodes::off_edge(std::uint32_t e, std::size_t k) const {
   return mesh_.points[node_in_edge(e, k)] - in_edge(order_, k).mean(mesh_.points, edge(e));
 }

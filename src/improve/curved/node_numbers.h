@@ -48,6 +48,9 @@ class HighNodes {
     return static_cast<VertexIndex>(first_in_tet_ + t * nodes_in_tet(order_) + k);
   }
 
+  /// Per point, those behind corners that lie on the boundary or an interface.
+  std::vector<char> is_on_wall() const;
+
   /// What along(edge, i, j, low, high) says of the edges of a face, from its corner i to j, at a place of it, summed.
   template <class Along>
   Vec3 by_edges(std::uint32_t f, const std::array<double, 3>& at, const Along& along) const {
