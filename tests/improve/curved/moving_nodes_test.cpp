@@ -55,7 +55,7 @@ BentNodes bent_ball(TetMesh& mesh, int order) {
   return BentNodes(mesh, order, find_bends(mesh, {}, smooth, order));
 }
 
-NodesMoved raised(TetMesh& mesh, const BentNodes& nodes, Walls walls) {
+NodesMoved moved_for_shape(TetMesh& mesh, const BentNodes& nodes, Walls walls) {
   std::vector<TetIndex> all(mesh.tets.size());
   std::iota(all.begin(), all.end(), 0);
   return raise_worst_elements(mesh, all, kLeastScaledJacobian, nodes.is_on_wall(), walls, no_context());
@@ -85,7 +85,7 @@ TEST(MovingNodes, ThoseOfWallsSlideAlongThemForBetterElements) {
     const TetMesh before = mesh;
     const std::vector<double> were = shapes_of(mesh);
     ASSERT_LT(*std::ranges::min_element(were), kLeastScaledJacobian);
-    const NodesMoved moved = raised(mesh, nodes, Walls::kSlide);
+    const NodesMoved moved = moved_for_shape(mesh, nodes, Walls::kSlide);
     ASSERT_FALSE(moved.slid.empty()) << order;
     std::set<VertexIndex> known;
     for (const auto& [node, by] : moved.by) known.insert(node);
@@ -100,9 +100,9 @@ TEST(MovingNodes, ThoseOfWallsSlideAlongThemForBetterElements) {
     EXPECT_GT(sum_of_bad(are), sum_of_bad(were));
 
     TetMesh held = before;
-    EXPECT_TRUE(raised(held, nodes, Walls::kStay).slid.empty());
+    EXPECT_TRUE(moved_for_shape(held, nodes, Walls::kStay).slid.empty());
     const double without = sum_of_bad(shapes_of(held));
-    raised(held, nodes, Walls::kSlide);
+    moved_for_shape(held, nodes, Walls::kSlide);
     EXPECT_GT(sum_of_bad(shapes_of(held)), without);
   }
 }
@@ -140,7 +140,7 @@ TEST(MovingNodes, WhatSlidAtOrderThreeLiesBetweenAtOrderFour) {
   TetMesh high = ball_with_flat_element(), low = high;
   BentNodes fourth = bent_ball(high, 4);
   BentNodes third(low, 3, fourth.lowered());
-  const NodesMoved moved = raised(low, third, Walls::kSlide);
+  const NodesMoved moved = moved_for_shape(low, third, Walls::kSlide);
   ASSERT_FALSE(moved.slid.empty());
   third.take(moved);
   fourth.go_on_from(third);
