@@ -106,10 +106,8 @@ def main():
     for house in houses:
         print("|", " | ".join(map(str, house.row())), "|")
     print("\nAn arrow: a file of one includes a header of the other.\n")
-    print("| wing | rooms | files | lines |\n| --- | ---: | ---: | ---: |")
-    for wing in sorted(now.wings, key=lambda w: -now.lines(now.wing, w)):
-        rooms = sum(r.split("/")[0] == wing for r in now.rooms)
-        print(f"| `{wing}` | {rooms} | {now.wings[wing]} | {now.lines(now.wing, wing):,} |")
+    wings = sorted(now.wings, key=lambda w: -now.lines(now.wing, w))
+    print(f"Lines of the wings: {', '.join(f'`{wing}` {now.lines(now.wing, wing):,}' for wing in wings)}.")
     _, _, touched = git("show", "HEAD:docs/measured/house.md").partition(TOUCHED)
     if touched:
         print("\n" + TOUCHED + touched, end="")

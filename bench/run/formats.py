@@ -16,7 +16,7 @@ def shown(first, second):
     lines = []
     for title, name, text in (("Linear", "formats", first), ("Second order", "formats-second-order", second)):
         (head, rows), = tables.parsed(text)
-        lines += [f"## {title}", "", text.splitlines()[0], "", *tables.some(head, rows, [c for c in head if c not in ("MB/s", "of a plain write", "peak MB")]), "", f"With memory: {tables.put(name, head, rows)}.", ""]
+        lines += [f"## {title}", "", text.splitlines()[0], "", *tables.some(head, rows, [c for c in head if c not in ("s", "MB/s", "of a plain write", "peak MB")]), "", f"With seconds and memory: {tables.put(name, head, rows)}.", ""]
     return lines
 
 

@@ -287,7 +287,7 @@ faces that are no sides of the cube, length of the edges inside, points that are
 
 def shown(rows):
     """Rows of cells."""
-    return [*tables.some(HEAD, rows, [c for c in HEAD if c not in ("volume off", "most °", "elements / CPU s")]), "", f"With volumes: {tables.put('inside', HEAD, rows)}."]
+    return [*tables.some(HEAD, [r for r in rows if r[0] != "5 bars"], [c for c in HEAD if c not in ("volume off", "most °", "elements / CPU s")]), "", f"With volumes, and 5 bars: {tables.put('inside', HEAD, rows)}."]
 
 
 def main():
