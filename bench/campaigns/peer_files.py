@@ -294,10 +294,10 @@ HEAD = ["project", "file", "ours", "volume", "groups", "theirs", "their volume",
 
 def shown(files):
     """Rows of cells: the projects, and what is not good."""
-    projects = [[project, len(its), sum(f[-1] == "good" for f in its), ", ".join(sorted({pathlib.Path(f[1]).suffix for f in its}))]
+    projects = [f"{project} {sum(f[-1] == 'good' for f in its)} of {len(its)}"
                 for project in dict.fromkeys(f[0] for f in files) for its in [[f for f in files if f[0] == project]]]
     bad = [[f[0], f[1], f[2], f[5], f[-1]] for f in files if f[-1] != "good"]
-    return [*tables.table(["project", "files", "good", "kinds"], projects), "",
+    return [f"Good, of all: {', '.join(projects)}.", "",
             *(["Not good:", "", *tables.table(["project", "file", "ours", "theirs", "verdict"], bad[:20]), ""] if bad else []),
             f"Each: {tables.put('peer-files', HEAD, files)}."]
 

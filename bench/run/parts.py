@@ -33,9 +33,9 @@ def shown(told):
     for what in ("divided", "written"):
         head = next(head for kind, head, _ in every if kind == what)
         rows = [row for kind, _, its in every if kind == what for row in its]
-        first = [row for row in rows if row[0] == rows[0][0]]
+        first = [row for row in rows if row[0] == rows[0][0] and str(row[1]) != "2"]
         lines += ["", *tables.some(head, first, [c for c in head if c not in ("model", "least", "most", "CPU s" if what == "written" else "")]), "",
-                  f"With another model: {tables.put(f'parts-{what}', head, rows)}."]
+                  f"Each, with another model: {tables.put(f'parts-{what}', head, rows)}."]
     return lines
 
 

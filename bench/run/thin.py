@@ -116,7 +116,7 @@ def shown(rows):
     link = tables.put("thin-bodies", HEAD, rows)
     rows = [r for r in rows if r[2] != BEFORE]
     meshers = list(dict.fromkeys(r[2] for r in rows))
-    bodies = list(dict.fromkeys((r[0], r[1]) for r in rows if r[1] in SHOWN))
+    bodies = list(dict.fromkeys((r[0], r[1]) for r in rows if r[1] in SHOWN and r[0] != "disc"))
     volume = {(r[0], r[1], r[2]): r[3] if tables.number(r[3]) is not None else "-" for r in rows}
     return ["Volume against the input's, in percent (-: no mesh, or one that is not valid):", "",
             *tables.table([*HEAD[:2], *meshers], [[*body, *(volume.get((*body, m), "") for m in meshers)] for body in bodies]), "",
