@@ -21,7 +21,7 @@ from bench.run import freecad as bench  # noqa: E402
 
 SKIPPED = 77
 NEAR = .01  # displacement and stress beside Gmsh's at equal elements
-EQUAL = .1  # numbers of elements that count as equal
+EQUAL = .15  # numbers of elements that count as equal, as for --elements; Gmsh's change from run to run
 
 
 def start(program, scratch, octafront, script, seconds=600):
