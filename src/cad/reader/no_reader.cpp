@@ -20,8 +20,7 @@ std::string reader_program() {
 #ifdef __EMSCRIPTEN__
   throw InputError(
       "CAD files (STEP, IGES, BREP) are not read in a web page: install Octafront and run `octafront ui` with the "
-      "file, "
-      "or convert it to a surface, such as STL or OBJ");
+      "file, or convert it to a surface, such as STL or OBJ");
 #else
   throw InputError(
       "CAD files (STEP, IGES, BREP) are not read on Windows yet: convert the file to a surface, such as STL or OBJ, or "

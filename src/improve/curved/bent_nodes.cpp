@@ -30,7 +30,7 @@ void bend(Bent& bent, const NodeMoves& by) {
 }  // namespace
 
 BentNodes::BentNodes(TetMesh& mesh, int order, const Bends& bends)
-    : HighNodes(mesh, order),
+    : NumberedNodes(mesh, order),
       bent_of_edge_(edges().size(), kNone),
       bent_of_face_(faces().corners.size(), kNone),
       bent_of_tet_(bends.tets.empty() ? 0 : mesh.tets.size(), kNone) {

@@ -27,7 +27,7 @@ struct Bent {
 /// The nodes of a mesh of order 3 or 4 where bends leave them: each lies where it does on straight edges and faces, or
 /// where order 3 has it, and is moved from there by the edges, faces and the element that bend, and by what it moved
 /// itself.
-class BentNodes : public HighNodes {
+class BentNodes : public NumberedNodes {
  public:
   /// `bends` were found for this order.
   BentNodes(TetMesh& mesh, int order, const Bends& bends);

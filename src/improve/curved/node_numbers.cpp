@@ -29,7 +29,7 @@ std::array<double, 3> shares_of_face(int order, const std::array<double, 3>& cor
   return shares;
 }
 
-HighNodes::HighNodes(TetMesh& mesh, int order)
+NumberedNodes::NumberedNodes(TetMesh& mesh, int order)
     : mesh_(mesh),
       order_(order),
       corners_(mesh.points.size()),
@@ -43,7 +43,7 @@ HighNodes::HighNodes(TetMesh& mesh, int order)
 }
 
 /// The nodes of each element in the order of the lattice, whichever way its edges and faces run.
-void HighNodes::number_nodes() {
+void NumberedNodes::number_nodes() {
   const std::size_t each = mesh_.high_nodes_per_tet();
   mesh_.high_nodes.resize(mesh_.tets.size() * each);
   parallel_for(mesh_.tets.size(), [&](std::size_t t) {
@@ -66,7 +66,7 @@ void HighNodes::number_nodes() {
   });
 }
 
-std::vector<char> HighNodes::is_on_wall() const {
+std::vector<char> NumberedNodes::is_on_wall() const {
   std::vector<char> is(mesh_.points.size());
   const auto mark = [&](const Triangle& wall) {
     const auto [a, b, c] = face_key(wall);
@@ -80,24 +80,24 @@ std::vector<char> HighNodes::is_on_wall() const {
   return is;
 }
 
-Vec3 HighNodes::off_edge(std::uint32_t e, std::size_t k) const {
+Vec3 NumberedNodes::off_edge(std::uint32_t e, std::size_t k) const {
   return mesh_.points[node_in_edge(e, k)] - in_edge(order_, k).mean(mesh_.points, edge(e));
 }
 
-Vec3 HighNodes::off_along(std::uint32_t e, double low, double high) const {
+Vec3 NumberedNodes::off_along(std::uint32_t e, double low, double high) const {
   const std::array<double, 3> shares = shares_of_edge(order_, low, high);
   Vec3 sum;
   for (std::size_t k = 0; k < nodes_in_edge(order_); ++k) sum += shares[k] * off_edge(e, k);
   return sum;
 }
 
-Vec3 HighNodes::off_by_edges(std::uint32_t f, const std::array<double, 3>& at) const {
+Vec3 NumberedNodes::off_by_edges(std::uint32_t f, const std::array<double, 3>& at) const {
   return by_edges(f, at, [&](std::uint32_t e, std::size_t, std::size_t, double low, double high) {
     return off_along(e, low, high);
   });
 }
 
-Vec3 HighNodes::off_middle(std::uint32_t f) const {
+Vec3 NumberedNodes::off_middle(std::uint32_t f) const {
   const Vec3 straight = in_face(order_, 0).mean(mesh_.points, faces_.corners[f]);
   return mesh_.points[node_in_face(f, 0)] - straight - off_by_edges(f, kMiddleOfFace);
 }

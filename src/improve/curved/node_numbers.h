@@ -24,10 +24,10 @@ std::array<double, 3> shares_of_face(int order, const std::array<double, 3>& cor
 inline constexpr std::array<double, 3> kMiddleOfFace{1.0 / 3, 1.0 / 3, 1.0 / 3};
 
 /// Which nodes of a mesh of order 3 or 4 the edges, faces and elements have, and how far they lie off straight ones.
-class HighNodes {
+class NumberedNodes {
  public:
   /// Makes a linear mesh one of this order, whose new nodes have no places yet.
-  HighNodes(TetMesh& mesh, int order);
+  NumberedNodes(TetMesh& mesh, int order);
 
   int order() const { return order_; }
   const TetMesh& mesh() const { return mesh_; }
