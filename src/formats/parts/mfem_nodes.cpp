@@ -86,9 +86,9 @@ SquareMatrix of_bernstein(int order) {
 MfemNumbering::MfemNumbering(std::span<const Tet> tets, std::size_t vertices, int order)
     : tets_(tets), vertices_(vertices), order_(order), size_(vertices) {
   if (order < 2) return;
-  edges_ = edges_of_tets(tets, vertices, PartOrder::kAsNamed);
+  edges_ = numbered_edges(tets, vertices, PartOrder::kAsNamed);
   in_edges_ = vertices + edges_.first.size() * nodes_in_edge(order);
-  faces_ = faces_of_tets(tets, vertices, PartOrder::kAsNamed);
+  faces_ = numbered_faces(tets, vertices, PartOrder::kAsNamed);
   in_faces_ = in_edges_ + faces_.first.size() * nodes_in_face(order);
   size_ = in_faces_ + tets.size() * nodes_in_tet(order);
 }

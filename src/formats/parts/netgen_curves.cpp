@@ -88,8 +88,8 @@ void add_part(NetgenCurves::Part& part, std::size_t n, int order, std::span<cons
 
 NetgenCurves::NetgenCurves(std::span<const Tet> given, std::size_t vertices)
     : tets(given),
-      edges(straight_part(edges_of_tets(given, vertices, PartOrder::kSorted))),
-      faces(straight_part(faces_of_tets(given, vertices, PartOrder::kSorted))) {}
+      edges(straight_part(numbered_edges(given, vertices, PartOrder::kSorted))),
+      faces(straight_part(numbered_faces(given, vertices, PartOrder::kSorted))) {}
 
 NetgenCurves::NetgenCurves(std::span<const Tet> given, std::size_t vertices, int order,
                            FunctionRef<Vec3(TetIndex, std::size_t)> node_at)

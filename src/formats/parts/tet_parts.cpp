@@ -1,7 +1,6 @@
 #include "formats/parts/tet_parts.h"
 
-#include "base/core/groups.h"
-#include "base/mesh/face_table.h"
+#include "base/mesh/tet_edges.h"
 
 #include <algorithm>
 #include <cmath>
@@ -10,55 +9,34 @@
 namespace octafront::io {
 namespace {
 
-struct EdgeUse {
-  VertexIndex high;
-  std::uint32_t edge;
-  auto operator<=>(const EdgeUse&) const = default;
-};
-
-/// `of` says of each the first that is the same, `sorted` these in the order of their vertices.
-NumberedParts count_through(std::vector<std::uint32_t> of, std::vector<std::uint32_t> sorted, PartOrder order) {
-  if (order == PartOrder::kAsNamed) std::ranges::sort(sorted);
-  std::vector<std::uint32_t> number(of.size());
-  for (std::uint32_t n = 0; n < sorted.size(); ++n) number[sorted[n]] = n;
-  for (std::uint32_t& part : of) part = number[part];
-  return {std::move(of), std::move(sorted)};
+/// From the numbers of those in the order of their vertices.
+template <std::size_t kEach>
+NumberedParts numbered(const std::vector<std::array<std::uint32_t, kEach>>& of_tet, std::size_t count,
+                       PartOrder order) {
+  NumberedParts parts{{}, std::vector<std::uint32_t>(count, kNone)};
+  for (const auto& of : of_tet) parts.of.insert(parts.of.end(), of.begin(), of.end());
+  for (std::uint32_t i = 0; i < parts.of.size(); ++i)
+    if (parts.first[parts.of[i]] == kNone) parts.first[parts.of[i]] = i;
+  if (order == PartOrder::kSorted) return parts;
+  std::vector<std::uint32_t> named = parts.first, number(parts.of.size());
+  std::ranges::sort(named);
+  for (std::uint32_t n = 0; n < named.size(); ++n) number[named[n]] = n;
+  for (std::uint32_t& part : parts.of) part = number[parts.first[part]];
+  parts.first = std::move(named);
+  return parts;
 }
 
 }  // namespace
 
-NumberedParts edges_of_tets(std::span<const Tet> tets, std::size_t vertices, PartOrder order) {
-  Groups<EdgeUse, std::uint64_t> at_low(vertices, [&](const auto& add) {
-    for (TetIndex t = 0; t < tets.size(); ++t)
-      for (std::uint32_t e = 0; e < 6; ++e) {
-        const auto [low, high] = std::minmax(tets[t][static_cast<std::size_t>(kTetEdges[e][0])],
-                                             tets[t][static_cast<std::size_t>(kTetEdges[e][1])]);
-        add(low, EdgeUse{high, 6 * t + e});
-      }
-  });
-  std::vector<std::uint32_t> of(6 * tets.size()), sorted;
-  for (std::size_t v = 0; v < vertices; ++v) {
-    const std::span<EdgeUse> uses = at_low[v];
-    std::ranges::sort(uses);
-    for (std::size_t i = 0; i < uses.size(); ++i) {
-      if (i == 0 || uses[i].high != uses[i - 1].high) sorted.push_back(uses[i].edge);
-      of[uses[i].edge] = sorted.back();
-    }
-  }
-  return count_through(std::move(of), std::move(sorted), order);
+NumberedParts numbered_edges(std::span<const Tet> tets, std::size_t vertices, PartOrder order) {
+  std::vector<std::array<std::uint32_t, 6>> of_tet;
+  const std::size_t count = edges_of_tets(tets, vertices, of_tet).size();
+  return numbered(of_tet, count, order);
 }
 
-NumberedParts faces_of_tets(std::span<const Tet> tets, std::size_t vertices, PartOrder order) {
-  const FaceTable table(vertices, [&](const auto& add) {
-    for (TetIndex t = 0; t < tets.size(); ++t)
-      for (std::uint32_t f = 0; f < 4; ++f) add(face_of(tets[t], static_cast<int>(f)), 4 * t + f);
-  });
-  std::vector<std::uint32_t> of(4 * tets.size()), sorted;
-  table.for_each_group([&](const Triangle&, std::span<const FaceTable::Entry> same) {
-    sorted.push_back(same.front().face);
-    for (const FaceTable::Entry& entry : same) of[entry.face] = sorted.back();
-  });
-  return count_through(std::move(of), std::move(sorted), order);
+NumberedParts numbered_faces(std::span<const Tet> tets, std::size_t vertices, PartOrder order) {
+  const TetFaces faces = faces_of_tets(tets, vertices);
+  return numbered(faces.of_tet, faces.corners.size(), order);
 }
 
 SquareMatrix inverse_of(SquareMatrix a) {

@@ -22,8 +22,8 @@ enum class PartOrder {
 };
 
 /// Edge e of tetrahedron t is 6 t + e, by kTetEdges; face f is 4 t + f, by kTetFaces. Indices are below `vertices`.
-NumberedParts edges_of_tets(std::span<const Tet> tets, std::size_t vertices, PartOrder order);
-NumberedParts faces_of_tets(std::span<const Tet> tets, std::size_t vertices, PartOrder order);
+NumberedParts numbered_edges(std::span<const Tet> tets, std::size_t vertices, PartOrder order);
+NumberedParts numbered_faces(std::span<const Tet> tets, std::size_t vertices, PartOrder order);
 
 using SquareMatrix = std::vector<std::vector<double>>;
 /// Gauss and Jordan's elimination, with the largest of a column as pivot. REQUIRES that there is an inverse.

@@ -6,7 +6,8 @@
 
 namespace octafront::curved {
 
-FaceNodes::FaceNodes(const TetMesh& mesh) : mesh_(mesh), faces_(faces_of(mesh)), side_(faces_.corners.size(), kNone) {
+FaceNodes::FaceNodes(const TetMesh& mesh)
+    : mesh_(mesh), faces_(faces_of_tets(mesh.tets, mesh.points.size())), side_(faces_.corners.size(), kNone) {
   for (TetIndex t = 0; t < mesh.tets.size(); ++t)
     for (const std::uint32_t f : faces_.of_tet[t]) side_[f] = t;
 }

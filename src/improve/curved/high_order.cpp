@@ -176,8 +176,8 @@ void add_high_order(TetMesh& mesh, int order, std::span<const VertexIndex> below
                     SecondOrderSummary& summary, const RunContext& context) {
   if (!below.empty()) {
     std::vector<std::array<std::uint32_t, 6>> edges_of_tet;
-    add_edges_above(below, edges_of(mesh, edges_of_tet), order, bends);
-    add_faces_above(below, faces_of(mesh), mesh, order, bends);
+    add_edges_above(below, edges_of_tets(mesh.tets, mesh.points.size(), edges_of_tet), order, bends);
+    add_faces_above(below, faces_of_tets(mesh.tets, mesh.points.size()), mesh, order, bends);
   }
   // What lies over walls would have to slide along with them.
   HighOrder high(mesh, order, bends, below.empty() ? Walls::kSlide : Walls::kStay);

@@ -27,7 +27,11 @@ std::tuple<double, double, double> by_coordinates(Vec3 p) {
 class KeptBends {
  public:
   KeptBends(const TetMesh& mesh, const TetMesh& before, int order)
-      : mesh_(mesh), before_(before), order_(order), edges_(edges_of(before, edges_of_tet_)), faces_(faces_of(before)) {
+      : mesh_(mesh),
+        before_(before),
+        order_(order),
+        edges_(edges_of_tets(before.tets, before.points.size(), edges_of_tet_)),
+        faces_(faces_of_tets(before.tets, before.points.size())) {
     match_corners();
     tet_of_edge_.assign(edges_.size(), kNone);
     tet_of_face_.assign(faces_.corners.size(), kNone);
@@ -40,10 +44,10 @@ class KeptBends {
   Bends run() const {
     Bends bends;
     std::vector<std::array<std::uint32_t, 6>> of_tet;
-    const TetEdges edges = edges_of(mesh_, of_tet);
+    const TetEdges edges = edges_of_tets(mesh_.tets, mesh_.points.size(), of_tet);
     take(edges.size(), bends.edges, [&](std::size_t e) { return bend_of_edge({edges.low[e], edges.high[e]}); });
     if (nodes_in_face(order_) == 0) return bends;
-    const TetFaces faces = faces_of(mesh_);
+    const TetFaces faces = faces_of_tets(mesh_.tets, mesh_.points.size());
     take(faces.corners.size(), bends.faces, [&](std::size_t f) { return bend_of_face(faces.corners[f]); });
     return bends;
   }

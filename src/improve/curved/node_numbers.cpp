@@ -33,8 +33,8 @@ NumberedNodes::NumberedNodes(TetMesh& mesh, int order)
     : mesh_(mesh),
       order_(order),
       corners_(mesh.points.size()),
-      faces_(curved::faces_of(mesh)),
-      edges_(edges_of(mesh, edge_of_)) {
+      faces_(faces_of_tets(mesh.tets, corners_)),
+      edges_(edges_of_tets(mesh.tets, corners_, edge_of_)) {
   first_in_face_ = corners_ + edges_.size() * nodes_in_edge(order);
   first_in_tet_ = first_in_face_ + faces_.corners.size() * nodes_in_face(order);
   mesh.points.resize(first_in_tet_ + mesh.tets.size() * nodes_in_tet(order));

@@ -91,7 +91,7 @@ void add_nodes(TetMesh& mesh, int order, std::span<const VertexIndex> below, cur
   if (order > 2) {
     curved::add_high_order(mesh, order, below, std::move(bends), summary, context);
   } else {
-    const curved::TetEdges edges = curved::add_straight_mid_nodes(mesh);
+    const TetEdges edges = curved::add_straight_mid_nodes(mesh);
     curved::add_edges_above(below, edges, order, bends);
     curved::bend_edges(mesh, edges, bends.edges, summary, context);
   }
