@@ -1,5 +1,6 @@
 #include "pipeline/stages/coarse_input.h"
 
+#include "base/geometry/measures.h"
 #include "base/mesh/complex.h"
 #include "pipeline/stages/methods.h"
 #include "sizing/field/affordable.h"
@@ -18,6 +19,10 @@ constexpr double kEdge = 0.75, kLeastEdge = 1.5;
 /// The part of the bound on the deviation that is spent on it, at most this part of a voxel: at .25 a tenth fewer
 /// triangles are left, and lines lie so far off that corners get poor elements.
 constexpr double kPartOfDeviation = 0.25, kMostDeviation = 0.1;
+/// Surfaces of fewer triangles are taken as they are: all stages before the volume take a fraction of a second. So are
+/// those whose edges would not become so many times as long, by which triangles are a tenth of what they were.
+constexpr std::size_t kManyTriangles = 100'000;
+constexpr double kMuchLonger = 4;
 
 bool measures_surface(const SizeOptions& sizes) {
   return sizes.curvature || sizes.gap || sizes.through || sizes.feature_elements || sizes.facets || sizes.field ||
@@ -41,7 +46,42 @@ double least_size(const SizeOptions& sizes, const SurfaceMesh& surface) {
   return least;
 }
 
+/// Over all triangles, each edge as often as it has some.
+double mean_edge(const SurfaceMesh& surface) {
+  double sum = 0;
+  for (const auto& [a, b, c] : surface.triangles) {
+    const Vec3 p = surface.points[a], q = surface.points[b], r = surface.points[c];
+    sum += distance(p, q) + distance(q, r) + distance(r, p);
+  }
+  return sum / (3 * static_cast<double>(surface.triangles.size()));
+}
+
+/// Whether what is asked for leaves no triangle of the input out of sight.
+bool looks_at_all(const Options& options) {
+  const SurfaceOptions& surface = options.surface;
+  return keeps_surface(options) || !traits_of(options.method).has_front || !options.periodic.empty() ||
+         surface.normal_deviation || surface.max_deviation || surface.volume_tolerance || options.order > 1 ||
+         measures_surface(options.size);
+}
+
 }  // namespace
+
+std::optional<SurfaceMesh> coarse_surface(const SurfaceMesh& clean, Run& run) {
+  const std::size_t triangles = clean.triangles.size();
+  if (triangles < kManyTriangles || !clean.sides.empty() || looks_at_all(run.options)) return {};
+  const double edge = kEdge * least_size(run.options.size, clean), now = mean_edge(clean);
+  if (edge < kMuchLonger * now) return {};
+  return run.stage("coarsen", [&](const Stage& stage) {
+    SurfaceMesh coarse = decimated(clean,
+                                   {.edge = edge,
+                                    .deviation = kMostDeviation * now,
+                                    .sharp_angle = run.options.surface.angle_of_features()},
+                                   stage.context());
+    stage.count("triangles of the input", static_cast<double>(triangles));
+    stage.count("triangles", static_cast<double>(coarse.triangles.size()));
+    return coarse;
+  });
+}
 
 std::optional<Domain> coarse_domain(const Domain& domain, Run& run) {
   const Options& options = run.options;
