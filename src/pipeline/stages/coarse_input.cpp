@@ -3,7 +3,9 @@
 #include "base/geometry/measures.h"
 #include "base/mesh/complex.h"
 #include "pipeline/stages/methods.h"
+#include "pipeline/stages/stages.h"
 #include "sizing/field/affordable.h"
+#include "sizing/sources/model_extent.h"
 #include "soup/coarse/decimate.h"
 
 #include <algorithm>
@@ -23,6 +25,9 @@ constexpr double kPartOfDeviation = 0.25, kMostDeviation = 0.1;
 /// those whose edges would not become so many times as long, by which triangles are a tenth of what they were.
 constexpr std::size_t kManyTriangles = 100'000;
 constexpr double kMuchLonger = 4;
+/// Automatic sizes are measured on what is left, and go down to a fifth of the largest: edges may get this part of that,
+/// and spend so much of the deviation that is kept.
+constexpr double kEdgeOfAutomatic = 0.3, kPartOfAutomatic = 0.1;
 
 bool measures_surface(const SizeOptions& sizes) {
   return sizes.curvature || sizes.gap || sizes.through || sizes.feature_elements || sizes.facets || sizes.field ||
@@ -38,8 +43,9 @@ double size_of_all(const SizeOptions& sizes, const SurfaceMesh& surface) {
   return size_of_elements(volume, *sizes.elements);
 }
 
-double least_size(const SizeOptions& sizes, const SurfaceMesh& surface) {
-  double least = size_of_all(sizes, surface);
+/// `usual`: where nothing else is asked for.
+double least_size(const SizeOptions& sizes, double usual) {
+  double least = usual;
   for (const NamedSize& s : sizes.named) least = std::min(least, s.size);
   for (const NearSize& s : sizes.near) least = std::min(least, s.size);
   for (const SizeRegion& s : sizes.regions) least = std::min(least, s.size);
@@ -60,8 +66,8 @@ double mean_edge(const SurfaceMesh& surface) {
 bool looks_at_all(const Options& options) {
   const SurfaceOptions& surface = options.surface;
   return keeps_surface(options) || !traits_of(options.method).has_front || !options.periodic.empty() ||
-         surface.normal_deviation || surface.max_deviation || surface.volume_tolerance || options.order > 1 ||
-         measures_surface(options.size);
+         surface.normal_deviation || surface.max_deviation || surface.volume_tolerance || options.size.chord_error ||
+         options.order > 1 || measures_surface(options.size);
 }
 
 }  // namespace
@@ -69,12 +75,18 @@ bool looks_at_all(const Options& options) {
 std::optional<SurfaceMesh> coarse_surface(const SurfaceMesh& clean, Run& run) {
   const std::size_t triangles = clean.triangles.size();
   if (triangles < kManyTriangles || !clean.sides.empty() || looks_at_all(run.options)) return {};
-  const double edge = kEdge * least_size(run.options.size, clean), now = mean_edge(clean);
+  const bool is_automatic = has_automatic_sizes(run.options);
+  const SizeOptions& sizes = run.options.size;
+  const double usual = is_automatic ? sizes.automatic_factor * base_size(clean) : size_of_all(sizes, clean);
+  const double edge = (is_automatic ? kEdgeOfAutomatic : kEdge) *
+                      least_size(sizes, std::min(usual, sizes.max_size.value_or(HUGE_VAL)));
+  const double now = mean_edge(clean);
   if (edge < kMuchLonger * now) return {};
+  const double kept = is_automatic ? true_to_input(clean, run.options).max_deviation.value_or(HUGE_VAL) : HUGE_VAL;
   return run.stage("coarsen", [&](const Stage& stage) {
     SurfaceMesh coarse = decimated(clean,
                                    {.edge = edge,
-                                    .deviation = kMostDeviation * now,
+                                    .deviation = std::min(kMostDeviation * now, kPartOfAutomatic * kept),
                                     .sharp_angle = run.options.surface.angle_of_features()},
                                    stage.context());
     stage.count("triangles of the input", static_cast<double>(triangles));
@@ -88,7 +100,7 @@ std::optional<Domain> coarse_domain(const Domain& domain, Run& run) {
   const bool must_stay = keeps_surface(options) || !traits_of(options.method).has_front || !options.periodic.empty() ||
                          !domain.bound.empty() || options.surface.normal_deviation;
   if (domain.voxel_spacing == 0 || must_stay || measures_surface(options.size)) return {};
-  const double edge = kEdge * least_size(options.size, domain.surface);
+  const double edge = kEdge * least_size(options.size, size_of_all(options.size, domain.surface));
   if (edge < kLeastEdge * domain.voxel_spacing) return {};
   const double most = kMostDeviation * domain.voxel_spacing;
   const double deviation = std::min(most, kPartOfDeviation * options.surface.max_deviation.value_or(HUGE_VAL));

@@ -17,9 +17,9 @@ namespace octafront {
 /// the surface, or where its triangles must stay.
 std::optional<Domain> coarse_domain(const Domain& domain, Run& run);
 
-/// The surface of one body likewise, if it has very many triangles much smaller than the size or the number of elements
-/// that is given, and nothing bounds how far the new surface may stray: within a tenth of its mean edge. REQUIRES a
-/// clean surface.
+/// The surface of one body likewise, if it has very many triangles, much smaller than automatic sizes, the size or the
+/// number of elements that is given, and the user bounds nowhere how far the new surface may stray: within a tenth of
+/// its mean edge. REQUIRES a clean surface.
 std::optional<SurfaceMesh> coarse_surface(const SurfaceMesh& clean, Run& run);
 
 }  // namespace octafront
