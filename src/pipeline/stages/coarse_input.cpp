@@ -25,8 +25,8 @@ constexpr double kPartOfDeviation = 0.25, kMostDeviation = 0.1;
 /// those whose edges would not become so many times as long, by which triangles are a tenth of what they were.
 constexpr std::size_t kManyTriangles = 100'000;
 constexpr double kMuchLonger = 4;
-/// Automatic sizes are measured on what is left, and go down to a fifth of the largest: edges may get this part of that,
-/// and spend so much of the deviation that is kept.
+/// Automatic sizes are measured on what is left, and go down to a fifth of the largest: edges may get this part of
+/// that, and spend so much of the deviation that is kept.
 constexpr double kEdgeOfAutomatic = 0.3, kPartOfAutomatic = 0.1;
 
 bool measures_surface(const SizeOptions& sizes) {
@@ -78,8 +78,8 @@ std::optional<SurfaceMesh> coarse_surface(const SurfaceMesh& clean, Run& run) {
   const bool is_automatic = has_automatic_sizes(run.options);
   const SizeOptions& sizes = run.options.size;
   const double usual = is_automatic ? sizes.automatic_factor * base_size(clean) : size_of_all(sizes, clean);
-  const double edge = (is_automatic ? kEdgeOfAutomatic : kEdge) *
-                      least_size(sizes, std::min(usual, sizes.max_size.value_or(HUGE_VAL)));
+  const double edge =
+      (is_automatic ? kEdgeOfAutomatic : kEdge) * least_size(sizes, std::min(usual, sizes.max_size.value_or(HUGE_VAL)));
   const double now = mean_edge(clean);
   if (edge < kMuchLonger * now) return {};
   const double kept = is_automatic ? true_to_input(clean, run.options).max_deviation.value_or(HUGE_VAL) : HUGE_VAL;

@@ -75,7 +75,8 @@ bool is_one_closed_sheet(const SurfaceMesh& surface, const RunContext& context) 
   for (const auto& [a, b, c] : triangles) sets.join(a, b), sets.join(a, c);
   for (VertexIndex v = 0; v < points.size(); ++v)
     if (sets.find(v) != 0) return false;
-  return std::ranges::none_of(triangles, [&](const Triangle& t) { return collinear(points[t[0]], points[t[1]], points[t[2]]); }) &&
+  return std::ranges::none_of(triangles,
+                              [&](const Triangle& t) { return collinear(points[t[0]], points[t[1]], points[t[2]]); }) &&
          is_closed_manifold(triangles, points.size());
 }
 

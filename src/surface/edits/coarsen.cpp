@@ -57,11 +57,11 @@ class Coarsener {
   template <class Test>
   static std::vector<std::uint32_t> collect(std::size_t n, const Test& test) {
     constexpr std::size_t kRange = 16384;
-    return parallel_collect<std::uint32_t>(
-        n, kRange, [&](std::size_t begin, std::size_t end, std::vector<std::uint32_t>& found) {
-          for (auto i = static_cast<std::uint32_t>(begin); i < end; ++i)
-            if (test(i)) found.push_back(i);
-        });
+    return parallel_collect<std::uint32_t>(n, kRange,
+                                           [&](std::size_t begin, std::size_t end, std::vector<std::uint32_t>& found) {
+                                             for (auto i = static_cast<std::uint32_t>(begin); i < end; ++i)
+                                               if (test(i)) found.push_back(i);
+                                           });
   }
 
   /// What could not be collapsed away is a vertex like others from here on.

@@ -28,9 +28,7 @@ class LineMerger {
       : mesh_(mesh), edits_(mesh, is_fixed), tolerance_(tolerance), leeway_(leeway), star_(mesh) {}
 
   std::uint64_t run() {
-    const auto is_bad = [&](std::uint32_t t) {
-      return !mesh_.is_removed(t) && quality(3 * t) < kBadBetweenLines;
-    };
+    const auto is_bad = [&](std::uint32_t t) { return !mesh_.is_removed(t) && quality(3 * t) < kBadBetweenLines; };
     std::uint64_t operations = 0;
     const auto mend = [&](std::uint32_t t) {
       const bool done = is_bad(t) && (close(t) || pass_line_on(t));
