@@ -18,8 +18,8 @@ namespace octafront {
 std::optional<Domain> coarse_domain(const Domain& domain, Run& run);
 
 /// The surface of one body likewise, if it has very many triangles, much smaller than automatic sizes, the size or the
-/// number of elements that is given, and the user bounds nowhere how far the new surface may stray: within a tenth of
-/// its mean edge. REQUIRES a clean surface.
+/// number of elements that is given, and the user bounds nowhere how far the new surface may stray: within a twentieth
+/// of its mean edge. Not where walls or gaps are about as narrow as that. REQUIRES a clean surface.
 std::optional<SurfaceMesh> coarse_surface(const SurfaceMesh& clean, Run& run);
 
 }  // namespace octafront

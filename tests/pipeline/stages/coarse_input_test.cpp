@@ -50,9 +50,9 @@ TEST(CoarseInput, IsTheSameOnAnyNumberOfThreads) {
   const Result r = generate(sphere, coarse_sizes(), alone);
   EXPECT_TRUE(was_coarsened(r));
   EXPECT_EQ(r.report.hash, generate(sphere, coarse_sizes(), four).report.hash);
-  EXPECT_NEAR(r.report.volume / enclosed_volume(sphere), 1, 0.01);
+  EXPECT_NEAR(r.report.volume / enclosed_volume(sphere), 1, 0.02);
   for (const Triangle& t : r.mesh.boundary)
-    for (const VertexIndex v : t) EXPECT_NEAR(length(r.mesh.points[v]), 1, 2e-3);
+    for (const VertexIndex v : t) EXPECT_NEAR(length(r.mesh.points[v]), 1, 1.5e-3);
 }
 
 TEST(CoarseInput, StaysWhereItIsLookedAtClosely) {
@@ -66,6 +66,15 @@ TEST(CoarseInput, StaysWhereItIsLookedAtClosely) {
   EXPECT_FALSE(is_coarsened_with([](Options& o) { o.order = 2; }));
   EXPECT_FALSE(is_coarsened_with([](Options& o) { o.size.size = 0.05; }));
   EXPECT_FALSE(was_coarsened(generate(testing::cube(60), coarse_sizes())));
+}
+
+TEST(CoarseInput, ThinWallsStayAsTheyAre) {
+  const Result r = generate(testing::box(1, 1, 1e-3, 100), coarse_sizes());
+  const auto coarsen = std::ranges::find(r.report.stages, "coarsen", &StageReport::name);
+  ASSERT_NE(coarsen, r.report.stages.end());
+  EXPECT_EQ(coarsen->notes.size(), 1u);
+  EXPECT_EQ(first_defect(r.mesh), std::nullopt);
+  EXPECT_NEAR(r.report.volume, 1e-3, 1e-12);
 }
 
 }  // namespace
