@@ -15,7 +15,7 @@ from bench.pages.tables import put, table, write
 from bench.process import waited
 
 TRIANGLES = 1_000_000
-REMESHED = ["bunny00.off", "fandisk_large.off", "elephant.off", "3torus.off"]
+REMESHED = ["bunny00.off", "fandisk_large.off", "elephant.off"]
 DIVIDED = ["armadillo.off"]
 SETTINGS = [("automatic", []), ("50,000 elements", ["--elements", 50_000]), ("500,000 elements", ["--elements", 500_000])]
 STAGES = ["repair", "coarsen", "detail", "features", "size field", "surface front"]

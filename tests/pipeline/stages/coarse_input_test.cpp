@@ -74,7 +74,7 @@ TEST(CoarseInput, ThinWallsStayAsTheyAre) {
   ASSERT_NE(coarsen, r.report.stages.end());
   EXPECT_EQ(coarsen->notes.size(), 1u);
   EXPECT_EQ(first_defect(r.mesh), std::nullopt);
-  EXPECT_NEAR(r.report.volume, 1e-3, 1e-12);
+  EXPECT_NEAR(r.report.volume, 1e-3, 1e-6);
 }
 
 }  // namespace
