@@ -218,9 +218,8 @@ MeshOfPieces::Division MeshOfPieces::divide(const std::vector<std::uint8_t>& nea
 Cells MeshOfPieces::cells_of_points(std::span<const VertexIndex> held, int stage) const {
   const Cube cube = cube_of_stage(box_, stage);
   if (held.size() == points_.size()) return cells_of(points_, cube, most_);
-  std::vector<Vec3> places;
-  places.reserve(held.size());
-  for (const VertexIndex v : held) places.push_back(points_[v]);
+  std::vector<Vec3> places(held.size());
+  parallel_for(held.size(), [&](std::size_t k) { places[k] = points_[held[k]]; });
   return cells_of(places, cube, most_);
 }
 
@@ -396,7 +395,7 @@ std::vector<Bytes> MeshOfPieces::apply(std::vector<Change>& changes, const Share
   comm_.sum(std::span(&more_tets, 1), "numbers of elements");
   live_ = static_cast<std::size_t>(static_cast<std::int64_t>(live_) + more_tets);
   gather_in_parts(comm_, placed, "vertices of pieces", [&](int, std::span<const EditMesh::Moved> part) {
-    for (const auto& [v, at] : part) points_[v] = at;
+    parallel_for(part.size(), [&](std::size_t i) { points_[part[i].vertex] = part[i].to; });
   });
   gather_in_parts(comm_, boundary, "boundary of pieces", [&](int, std::span<const EditMesh::ChangedTriangle> part) {
     for (const auto& [number, corners] : part) rest_.boundary[number] = corners;
