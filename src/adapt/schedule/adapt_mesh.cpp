@@ -9,10 +9,10 @@
 #include "base/core/disjoint_sets.h"
 #include "base/core/groups.h"
 #include "base/core/parallel.h"
+#include "base/core/renumber.h"
 #include "base/core/validate.h"
+#include "base/geometry/blocks.h"
 #include "base/geometry/measures.h"
-#include "base/mesh/renumber.h"
-#include "base/shared/blocks.h"
 
 #include <algorithm>
 #include <cmath>
