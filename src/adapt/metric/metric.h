@@ -21,6 +21,15 @@ namespace octafront::adapt {
 
 using octafront::Metric;
 
+/// m.times(e) and m.squared(e), inlined everywhere: most of what lengths and scores cost.
+OCTAFRONT_KERNEL Vec3 times(const Metric& m, Vec3 e) {
+  return {m.xx * e.x + m.xy * e.y + m.xz * e.z, m.xy * e.x + m.yy * e.y + m.yz * e.z,
+          m.xz * e.x + m.yz * e.y + m.zz * e.z};
+}
+OCTAFRONT_KERNEL double squared(const Metric& m, Vec3 e) {
+  return dot(e, times(m, e));
+}
+
 /// Requires a determinant that is not 0.
 Metric inverse(const Metric& m);
 
@@ -67,7 +76,7 @@ OCTAFRONT_KERNEL double log_mean(double a, double b) {
 /// The length of the edge e in the metrics of its two ends, after the measures of the Unstructured Grid Adaptation
 /// Working Group: 1 is what is wanted.
 OCTAFRONT_KERNEL double metric_length(Vec3 e, const Metric& a, const Metric& b) {
-  return log_mean(std::sqrt(a.squared(e)), std::sqrt(b.squared(e)));
+  return log_mean(std::sqrt(squared(a, e)), std::sqrt(squared(b, e)));
 }
 
 /// The area of the triangle between two edges in a metric.
@@ -94,8 +103,8 @@ OCTAFRONT_KERNEL double score_of_sums(double six_volumes, double sum) {
 /// of greatest density. `six_volumes`: the determinant of its edges.
 OCTAFRONT_KERNEL double metric_score(double six_volumes, const Metric& m, double density, Vec3 a, Vec3 b, Vec3 c,
                                      Vec3 d) {
-  return score_of_sums(six_volumes * density, m.squared(b - a) + m.squared(c - a) + m.squared(d - a) +
-                                                  m.squared(c - b) + m.squared(d - b) + m.squared(d - c));
+  return score_of_sums(six_volumes * density, squared(m, b - a) + squared(m, c - a) + squared(m, d - a) +
+                                                  squared(m, c - b) + squared(m, d - b) + squared(m, d - c));
 }
 /// The same in a metric of size, which has no say.
 OCTAFRONT_KERNEL double metric_score(double six_volumes, Vec3 a, Vec3 b, Vec3 c, Vec3 d) {

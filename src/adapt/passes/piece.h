@@ -40,9 +40,10 @@ struct alignas(64) Vertex {
   /// For what mends: kStirred, something around it changed; kSettling, just before the cycle that is under way; kCalm,
   /// all that could be tried around it has been, in vain.
   enum Calmness : std::uint8_t { kCalm, kSettling, kStirred } calmness = kStirred;
-  std::uint32_t id = kNone;  ///< in the mesh that was given; kNone: new
-  std::uint32_t hint = 0;    ///< where the metric was looked up (MetricField::at)
-  double density = 1;        ///< density_of(metric)
+  std::uint32_t id = kNone;    ///< in the mesh that was given; kNone: new
+  std::uint32_t hint = 0;      ///< where the metric was looked up (MetricField::at)
+  std::uint32_t near = kNone;  ///< of a wall: a triangle of the ground that may be near; spares searches only
+  double density = 1;          ///< density_of(metric)
   Metric metric;
 
   bool stays() const { return rim || frozen || held || kind == Kind::kFixed; }
@@ -85,8 +86,8 @@ struct SquaredBounds {
 /// A length lies between those in the metrics of the two ends.
 OCTAFRONT_KERNEL SquaredBounds squared_bounds(const Vertex& p, const Vertex& q, bool isotropic) {
   const Vec3 e = q.at - p.at;
-  const double squared = dot(e, e), a = isotropic ? p.metric.xx * squared : p.metric.squared(e),
-               b = isotropic ? q.metric.xx * squared : q.metric.squared(e);
+  const double squared = dot(e, e), a = isotropic ? p.metric.xx * squared : adapt::squared(p.metric, e),
+               b = isotropic ? q.metric.xx * squared : adapt::squared(q.metric, e);
   return {std::min(a, b), std::max(a, b)};
 }
 /// A vertex on the way between two, without a place or a kind: with its metric where it does not get its own.

@@ -560,6 +560,9 @@ Adapted adapt_mesh(const TetMesh& mesh, const MetricField& metric, const AdaptRu
   const Guide guide{metric,          ground,     least == bounds.tolerance.end() ? rules.tolerance : *least,
                     stage.context(), taken.kept, bounds.tolerance};
   taken.parts.isotropic = metric.is_isotropic();
+  const std::vector<Triangle>& walls = ground.walls().surface.triangles;
+  for (std::uint32_t t = 0; t < walls.size(); ++t)
+    for (const VertexIndex v : walls[t]) taken.parts.vertices[v].near = t;
   parallel_for(taken.parts.vertices.size(), [&](std::size_t v) { guide.ask(taken.parts.vertices[v]); });
   if (rules.keep_walls)
     for (Vertex& v : taken.parts.vertices) v.frozen |= v.kind != Kind::kInner;
