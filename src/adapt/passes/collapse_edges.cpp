@@ -80,15 +80,16 @@ class EdgeCollapser {
     const auto waits = [&](VertexIndex v) {
       return round == 0 ? mends_ || piece_.vertices[v].active : changed_[v] == round;
     };
-    worst_at_.assign(piece_.vertices.size(), 2);
+    const float poor = piece_.isotropic ? kPoorForCollapse : kPoorForCollapseInMetric;
+    worst_at_.assign(piece_.vertices.size(), poor);
     for (TetIndex t = 0; t < piece_.complex.slots(); ++t)
-      if (piece_.complex.alive(t))
+      if (piece_.score[t] < poor && piece_.complex.alive(t))
         for (const VertexIndex v : piece_.tet(t)) worst_at_[v] = std::min(worst_at_[v], piece_.score[t]);
     for (TetIndex t = 0; t < piece_.complex.slots(); ++t) {
       if (!piece_.complex.alive(t)) continue;
       const Tet& c = piece_.tet(t);
-      const bool goes = mends_ ? is_to_mend(piece_, t)
-                               : piece_.score[t] < (piece_.isotropic ? kPoorForCollapse : kPoorForCollapseInMetric);
+      if (std::none_of(c.begin(), c.end(), waits)) continue;
+      const bool goes = mends_ ? is_to_mend(piece_, t) : piece_.score[t] < poor;
       if (mends_ && !goes) continue;
       for (const auto& [i, j] : kTetEdges) {
         const Vertex &p = piece_.vertices[c[i]], &q = piece_.vertices[c[j]];
@@ -263,7 +264,7 @@ class EdgeCollapser {
   std::vector<Piece::WallAt> walls_at_;
   Plan one_, other_;
   std::vector<HalfFace> star_;
-  std::vector<float> worst_at_;  ///< per vertex: the least score of its elements
+  std::vector<float> worst_at_;  ///< per vertex: the least score of its elements that are poor
   std::vector<VertexIndex> around_;
   std::vector<int> changed_;         ///< per vertex: one more than the last round that changed something around it
   std::vector<std::uint32_t> seen_;  ///< per vertex: the last stamp it got

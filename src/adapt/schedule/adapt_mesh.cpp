@@ -149,7 +149,7 @@ class Adapter {
   /// What is still poor, each place by itself: what is so long that it was at the rim of all its pieces, too.
   void mend(Counts& sum) {
     choose_poor();
-    if (count_poor() * kMostPoor > mesh_.tets.size() && !mesh_.isotropic) return;
+    if (!mesh_.isotropic && count_poor() * kMostPoor > mesh_.tets.size()) return;
     mends_ = true;
     for (int k = 0; k < kMostRoundsOfMending; ++k) {
       const Cells places = poor_places(k > 0);

@@ -1,16 +1,12 @@
 #include "adapt/schedule/nearness.h"
 
-#include "base/core/flat_map.h"
 #include "base/core/parallel.h"
 #include "base/core/renumber.h"
 #include "base/geometry/hausdorff.h"
 #include "base/geometry/measures.h"
 
 #include <algorithm>
-#include <array>
-#include <bit>
 #include <cmath>
-#include <cstdint>
 #include <map>
 #include <utility>
 
@@ -45,30 +41,6 @@ void add_triangles(const std::vector<TriangleCorners>& list, SurfaceMesh& surfac
     surface.points.insert(surface.points.end(), t.begin(), t.end());
     surface.triangles.push_back({first, first + 1, first + 2});
   }
-}
-
-/// Points by their bits.
-struct PointKeys {
-  using Key = std::array<std::uint64_t, 3>;
-  static constexpr Key kEmpty{~std::uint64_t{0}, ~std::uint64_t{0}, ~std::uint64_t{0}};
-  static constexpr std::uint64_t hash(const Key& key) {
-    return key[0] * 0x9e3779b97f4a7c15u + key[1] * 0xc2b2ae3d27d4eb4fu + key[2] * 0xd6e8feb86659fd93u;
-  }
-};
-
-/// Corners at the same place become one: each is looked at once then.
-void share_points(SurfaceMesh& surface) {
-  FlatMap<PointKeys::Key, VertexIndex, PointKeys> number(surface.points.size());
-  std::vector<Vec3> points;
-  for (Triangle& t : surface.triangles)
-    for (VertexIndex& v : t) {
-      const Vec3 p = surface.points[v];
-      const auto bits = [](double x) { return std::bit_cast<std::uint64_t>(x); };
-      VertexIndex& there = number.find_or_add({bits(p.x), bits(p.y), bits(p.z)}, kNone);
-      if (there == kNone) there = static_cast<VertexIndex>(points.size()), points.push_back(p);
-      v = there;
-    }
-  surface.points = std::move(points);
 }
 
 TriangleCorners corners_on(const SurfaceMesh& surface, const Triangle& t) {
@@ -114,7 +86,6 @@ SmoothWalls::SmoothWalls(const Ground& ground, const WallBounds& bounds) : bound
   }
   if (ground.given()) add_given(ground, all);
   tree_ = TriangleTree(all);
-  for (Group& group : groups_) share_points(group.smooth);
   std::vector<SurfaceMesh> old_of_groups = divided_in_groups(old);
   for (std::size_t g = 0; g < groups_.size(); ++g) {
     groups_[g].old = std::move(old_of_groups[g]);
