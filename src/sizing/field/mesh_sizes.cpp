@@ -1,4 +1,4 @@
-#include "sizing/sources/mesh_sizes.h"
+#include "sizing/field/mesh_sizes.h"
 
 #include <octafront/tet_mesh.h>
 
