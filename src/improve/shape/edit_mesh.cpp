@@ -4,12 +4,12 @@
 
 #include "base/core/fixed_point.h"
 #include "base/core/groups.h"
+#include "base/core/index_range.h"
 #include "base/core/parallel.h"
 #include "base/core/validate.h"
 #include "base/geometry/predicates.h"
-#include "base/labels/labels.h"
-#include "base/mesh/index_range.h"
-#include "base/mesh/renumber.h"
+#include "base/mesh/labels.h"
+#include "base/mesh/renumber_mesh.h"
 
 #include <algorithm>
 #include <array>

@@ -1,9 +1,9 @@
 #include "soup/mend/dust.h"
 
+#include "base/core/renumber.h"
 #include "base/geometry/measures.h"
 #include "base/geometry/predicates.h"
 #include "base/mesh/edge_table.h"
-#include "base/mesh/renumber.h"
 
 #include <algorithm>
 #include <array>

@@ -1,6 +1,6 @@
 #include <octafront/error.h>
 
-#include "base/mesh/renumber.h"
+#include "base/core/renumber.h"
 #include "soup/tidy/steps.h"
 
 #include <algorithm>
