@@ -44,19 +44,20 @@ constexpr double kSkipped = 1e-7;
 
 }  // namespace
 
-ThinWalls::Look ThinWalls::look(const std::vector<SurfacePiece>& pieces, const std::vector<double>& sizes,
+ThinWalls::Look ThinWalls::look(std::span<const SurfacePiece> pieces, std::span<const double> sizes,
                                 std::optional<std::size_t> triangles) const {
-  const auto squares = [&](std::size_t piece) { return length(pieces[piece].n) / (sizes[piece] * sizes[piece]); };
+  RawVector<double> squares(pieces.size());
+  parallel_for(pieces.size(), [&](std::size_t i) { squares[i] = length(pieces[i].n) / (sizes[i] * sizes[i]); });
   double all = 0;
-  for (std::size_t i = 0; i < pieces.size(); ++i) all += squares(i);
+  for (const double of_piece : squares) all += of_piece;
   Look seen{{}, triangles ? static_cast<double>(*triangles) / all : kTrianglesPerSquare};
   const double step = all / kPlacesOfWalls;
   std::vector<Place>& looked_at = seen.places;
   double passed = 0, next = 0.5 * step;
   for (std::size_t i = 0; i < pieces.size(); ++i) {
-    passed += squares(i);
+    passed += squares[i];
+    if (!(passed > next)) continue;
     const auto count = std::ceil((passed - next) / step);
-    if (!(count > 0)) continue;
     next += count * step;
     looked_at.push_back({i, count * step});
   }
@@ -67,7 +68,7 @@ ThinWalls::Look ThinWalls::look(const std::vector<SurfacePiece>& pieces, const s
   return seen;
 }
 
-double ThinWalls::excess_tets(const std::vector<SurfacePiece>& pieces, const std::vector<double>& sizes,
+double ThinWalls::excess_tets(std::span<const SurfacePiece> pieces, std::span<const double> sizes,
                               std::optional<std::size_t> triangles) const {
   const Look seen = look(pieces, sizes, triangles);
   const bool are_coarse = seen.triangles_per_square < kCoarse * kTrianglesPerSquare;
@@ -80,7 +81,7 @@ double ThinWalls::excess_tets(const std::vector<SurfacePiece>& pieces, const std
   return excess;
 }
 
-double ThinWalls::tets_through(const std::vector<SurfacePiece>& pieces, const std::vector<double>& sizes,
+double ThinWalls::tets_through(std::span<const SurfacePiece> pieces, std::span<const double> sizes,
                                std::optional<std::size_t> triangles) const {
   const Look seen = look(pieces, sizes, triangles);
   double through = 0;

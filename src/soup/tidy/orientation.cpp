@@ -1,3 +1,5 @@
+#include "base/core/disjoint_sets.h"
+#include "base/core/parallel.h"
 #include "soup/tidy/steps.h"
 
 #include <algorithm>
@@ -49,15 +51,41 @@ class PieceWalk {
   const std::vector<Triangle>& triangles_;
   const EdgeTable& table_;
   const RunContext& context_;
-  const std::vector<std::uint32_t> edge_of_;
+  const RawVector<std::uint32_t> edge_of_;
   std::vector<char> turn_;
   std::vector<std::uint32_t> members_;
 };
+
+/// Whether the two faces of each edge agree as they are.
+bool agree_as_they_are(std::span<const Triangle> triangles, const EdgeTable& table) {
+  return parallel_find(table.size(), [&](std::size_t e) {
+           const auto uses = table.uses(e);
+           return uses.size() == 2 && start_of(triangles, uses[0]) == start_of(triangles, uses[1]);
+         }) == table.size();
+}
+
+Pieces pieces_without_turning(std::size_t triangles, const EdgeTable& table) {
+  DisjointSets joined(triangles);
+  for (std::size_t e = 0; e < table.size(); ++e)
+    if (table.uses(e).size() == 2) joined.join(table.uses(e)[0] / 3, table.uses(e)[1] / 3);
+  Pieces pieces;
+  pieces.piece_of_triangle.assign(triangles, kNone);
+  for (std::uint32_t t = 0; t < triangles; ++t) {
+    std::uint32_t& of_first = pieces.piece_of_triangle[joined.find(t)];
+    if (of_first == kNone) {
+      of_first = pieces.count();
+      pieces.orientable.push_back(1);
+    }
+    pieces.piece_of_triangle[t] = of_first;
+  }
+  return pieces;
+}
 
 }  // namespace
 
 Pieces orient_pieces(Draft& draft) {
   std::vector<Triangle>& triangles = draft.mesh.triangles;
+  if (agree_as_they_are(triangles, draft.edges())) return pieces_without_turning(triangles.size(), draft.edges());
   PieceWalk walk(draft);
   Pieces pieces;
   pieces.piece_of_triangle.assign(triangles.size(), kNone);
