@@ -71,7 +71,8 @@ Groups<> group_in_stretches(std::size_t owners, std::uint32_t items, const Owner
     };
     parallel_for(stretches, visit_stretch, Split::kSingly);
   };
-  parallel_for(stretches, [&](std::size_t s) { next[s].resize(owners + 1); }, Split::kSingly);
+  parallel_for(
+      stretches, [&](std::size_t s) { next[s].resize(owners + 1); }, Split::kSingly);
   for_each([](std::uint32_t, std::uint32_t owner, std::uint32_t* count) { ++count[owner]; });
   RawVector<std::uint32_t> first(owners + 1);
   const auto count = [&](std::size_t begin, std::size_t end) {

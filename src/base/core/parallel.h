@@ -103,8 +103,8 @@ All joined(std::vector<std::vector<typename All::value_type>>& parts) {
   return all;
 }
 
-/// What collect(begin, end, out) appends to a vector for ranges that together are [0, n), in their order. A RawVector is
-/// filled by several threads, too.
+/// What collect(begin, end, out) appends to a vector for ranges that together are [0, n), in their order. A RawVector
+/// is filled by several threads, too.
 template <class Item, class All = std::vector<Item>, class Collect>
 All parallel_collect(std::size_t n, std::size_t range, const Collect& collect) {
   std::vector<std::vector<Item>> parts((n + range - 1) / range);

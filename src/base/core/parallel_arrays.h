@@ -35,7 +35,8 @@ RawVector<Item> parallel_filled(std::size_t n, const Item& value) {
   return all;
 }
 
-/// The sum of term(i) for i < n, added one after the other, as rounding asks: only the terms are found by several threads.
+/// The sum of term(i) for i < n, added one after the other, as rounding asks: only the terms are found by several
+/// threads.
 template <class Term>
 double sum_in_order(std::size_t n, const Term& term) {
   double sum = 0;
@@ -55,7 +56,8 @@ Number parallel_max(std::size_t n, Number none, const Of& of) {
   std::vector<Number> of_block((n + kNumbersAtOnce - 1) / kNumbersAtOnce, none);
   parallel_for(of_block.size(), [&](std::size_t b) {
     Number most = none;
-    for (std::size_t i = b * kNumbersAtOnce; i < std::min(n, (b + 1) * kNumbersAtOnce); ++i) most = std::max(most, of(i));
+    for (std::size_t i = b * kNumbersAtOnce; i < std::min(n, (b + 1) * kNumbersAtOnce); ++i)
+      most = std::max(most, of(i));
     of_block[b] = most;
   });
   for (const Number& number : of_block) none = std::max(none, number);
@@ -69,9 +71,8 @@ std::size_t parallel_number(std::size_t n, const Count& count, const Number& num
   if (thread_count() == 1 || n <= kNumbersAtOnce) return number(std::size_t{0}, n, std::size_t{0});
   std::vector<std::size_t> first((n + kNumbersAtOnce - 1) / kNumbersAtOnce);
   const auto for_each_block = [&](const auto& visit) {
-    parallel_for(first.size(), [&](std::size_t b) {
-      visit(b * kNumbersAtOnce, std::min(n, (b + 1) * kNumbersAtOnce), first[b]);
-    });
+    parallel_for(first.size(),
+                 [&](std::size_t b) { visit(b * kNumbersAtOnce, std::min(n, (b + 1) * kNumbersAtOnce), first[b]); });
   };
   for_each_block([&](std::size_t begin, std::size_t end, std::size_t& sum) { sum = count(begin, end); });
   std::size_t all = 0;

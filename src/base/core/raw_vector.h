@@ -20,7 +20,8 @@ struct LeftAsIs : std::allocator<Item> {
   explicit LeftAsIs(const LeftAsIs<Other>&) {}
 
   template <class Made>
-  void construct(Made* at) {
+  void construct([[maybe_unused]] Made* at) noexcept(std::is_nothrow_default_constructible_v<Made> ||
+                                                     std::is_trivially_copyable_v<Made>) {
     if constexpr (!std::is_trivially_copyable_v<Made>) ::new (static_cast<void*>(at)) Made;
   }
   template <class Made, class... Arguments>

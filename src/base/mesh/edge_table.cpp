@@ -45,13 +45,10 @@ EdgeTable make_edge_table(std::size_t vertices, std::span<const Triangle> triang
     auto operator<=>(const Use&) const = default;
   };
   const auto half_edges = static_cast<std::uint32_t>(3 * triangles.size());
-  const Groups<> of_vertex = group_by_owner(vertices, half_edges, [&](HalfEdge h) {
-    return std::min(start_of(triangles, h), end_of(triangles, h));
-  });
+  const Groups<> of_vertex = group_by_owner(
+      vertices, half_edges, [&](HalfEdge h) { return std::min(start_of(triangles, h), end_of(triangles, h)); });
   RawVector<Use> uses(half_edges);
-  const auto uses_of = [&](std::size_t v) {
-    return std::span(uses).subspan(of_vertex.first(v), of_vertex[v].size());
-  };
+  const auto uses_of = [&](std::size_t v) { return std::span(uses).subspan(of_vertex.first(v), of_vertex[v].size()); };
   parallel_for(vertices, [&](std::size_t v) {
     const std::span<Use> at_vertex = uses_of(v);
     for (std::size_t k = 0; k < at_vertex.size(); ++k) {
@@ -76,14 +73,13 @@ EdgeTable make_edge_table(std::size_t vertices, std::span<const Triangle> triang
   EdgeTable table;
   table.edges.resize(half_edges);
   table.first.resize(half_edges + std::size_t{1});
-  const std::size_t edges =
-      parallel_number(vertices, count, [&](std::size_t begin, std::size_t end, std::size_t next) {
-        for_each_edge(begin, end, [&](std::size_t v, std::size_t k) {
-          table.edges[next] = {static_cast<VertexIndex>(v), uses_of(v)[k].larger};
-          table.first[next++] = static_cast<std::uint32_t>(of_vertex.first(v) + k);
-        });
-        return next;
-      });
+  const std::size_t edges = parallel_number(vertices, count, [&](std::size_t begin, std::size_t end, std::size_t next) {
+    for_each_edge(begin, end, [&](std::size_t v, std::size_t k) {
+      table.edges[next] = {static_cast<VertexIndex>(v), uses_of(v)[k].larger};
+      table.first[next++] = static_cast<std::uint32_t>(of_vertex.first(v) + k);
+    });
+    return next;
+  });
   table.edges.resize(edges), table.edges.shrink_to_fit();
   table.first[edges] = half_edges;
   table.first.resize(edges + 1), table.first.shrink_to_fit();

@@ -29,8 +29,7 @@ double lowest_height(Vec3 a, Vec3 b, Vec3 c) {
 
 /// Calls visit(face, neighbour) for each edge of `face` that has just two faces.
 template <typename Visit>
-void for_neighbours(const EdgeTable& table, std::span<const std::uint32_t> edge_of, std::uint32_t face,
-                    Visit visit) {
+void for_neighbours(const EdgeTable& table, std::span<const std::uint32_t> edge_of, std::uint32_t face, Visit visit) {
   for (std::uint32_t i = 0; i < 3; ++i) {
     const auto uses = table.uses(edge_of[3 * face + i]);
     if (uses.size() == 2) visit(uses[0] / 3 == face ? uses[1] / 3 : uses[0] / 3);

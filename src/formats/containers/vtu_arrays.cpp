@@ -60,19 +60,22 @@ void VtuArrays::write_array(const Array& array) {
   for (auto& batch : batches) batch.resize(std::min(kBatch, blocks));
   const auto pack = [&](std::uint64_t first, std::vector<Block>& batch) {
     if (first >= blocks) return;
-    parallel_for(std::min(kBatch, blocks - first), [&](std::uint64_t k) {
-      const std::uint64_t begin = (first + k) * values_per_block;
-      const std::uint64_t values = std::min(values_per_block, array.values - begin);
-      const std::uint64_t bytes = values * array.bytes_per_value;
-      Block& block = batch[k];
-      block.raw.resize(bytes);
-      array.fill(begin, values, block.raw.data());
-      block.packed.resize(compressBound(bytes));
-      block.size = block.packed.size();
-      if (compress2(block.packed.data(), &block.size, reinterpret_cast<const Bytef*>(block.raw.data()), bytes,
-                    kLevel) != Z_OK)
-        throw OutputError(file_.name() + ": zlib could not compress the data: out of memory");
-    }, Split::kSingly);
+    parallel_for(
+        std::min(kBatch, blocks - first),
+        [&](std::uint64_t k) {
+          const std::uint64_t begin = (first + k) * values_per_block;
+          const std::uint64_t values = std::min(values_per_block, array.values - begin);
+          const std::uint64_t bytes = values * array.bytes_per_value;
+          Block& block = batch[k];
+          block.raw.resize(bytes);
+          array.fill(begin, values, block.raw.data());
+          block.packed.resize(compressBound(bytes));
+          block.size = block.packed.size();
+          if (compress2(block.packed.data(), &block.size, reinterpret_cast<const Bytef*>(block.raw.data()), bytes,
+                        kLevel) != Z_OK)
+            throw OutputError(file_.name() + ": zlib could not compress the data: out of memory");
+        },
+        Split::kSingly);
   };
   const auto write = [&](std::uint64_t first, const std::vector<Block>& batch) {
     for (std::uint64_t k = 0; k < std::min(kBatch, blocks - first); ++k) {

@@ -79,9 +79,8 @@ class Off {
     check_claim(input_, counts_at_, {faces_, 2, "faces"}, scan_.bytes_left());
     const std::vector<std::string_view> ranges = line_ranges(text);
     std::vector<std::uint64_t> first(ranges.size());
-    parallel_for(ranges.size(), [&](std::size_t r) {
-      for_each_line(ranges[r], [&](Scanner&) { return ++first[r], true; });
-    });
+    parallel_for(ranges.size(),
+                 [&](std::size_t r) { for_each_line(ranges[r], [&](Scanner&) { return ++first[r], true; }); });
     std::uint64_t lines = 0;
     for (std::uint64_t& of_range : first) lines += std::exchange(of_range, lines);
     if (lines < vertices_ + faces_) return false;

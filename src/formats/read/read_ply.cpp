@@ -50,7 +50,11 @@ class BinaryValues {
  public:
   static constexpr bool kIsText = false;
   BinaryValues(const Input& input, const char* begin, bool swap)
-      : input_(&input), progress_(input, begin), at_(begin), end_(input.bytes.data() + input.bytes.size()), swap_(swap) {}
+      : input_(&input),
+        progress_(input, begin),
+        at_(begin),
+        end_(input.bytes.data() + input.bytes.size()),
+        swap_(swap) {}
 
   const char* position() const { return at_; }
   void set_position(const char* at) { at_ = at; }
@@ -278,8 +282,8 @@ class PlyBody {
     std::uint64_t size = 0;
     for (const PlyProperty& p : element.properties) {
       if (p.is_list && !is_corners(p)) return false;
-      size += p.is_list ? Values::least_bytes(p.count_type) + 3 * Values::least_bytes(p.type)
-                        : Values::least_bytes(p.type);
+      size +=
+          p.is_list ? Values::least_bytes(p.count_type) + 3 * Values::least_bytes(p.type) : Values::least_bytes(p.type);
     }
     if (builder_.faces() > 0) return false;
     const std::size_t points = builder_.points.size();  // those behind the faces in the file are looked for one by one

@@ -103,8 +103,7 @@ class MeshHash {
       if (rank < static_cast<std::size_t>(comm_.rank())) before += counts[rank];
       all += counts[rank];
     }
-    for (const std::uint64_t of_rank :
-         gathered_lists(comm_, std::vector<std::uint64_t>{sum_of(items, before)}, "hash"))
+    for (const std::uint64_t of_rank : gathered_lists(comm_, std::vector<std::uint64_t>{sum_of(items, before)}, "hash"))
       sum += of_rank;
     add_sum(all, sum);
   }

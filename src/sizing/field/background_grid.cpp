@@ -97,8 +97,7 @@ class GridMaker {
   bool is_divided(const Inside& inside) const {
     if (inside.high == 0 || inside.cell.level() == OctreeKey::kMaxLevel) return false;
     if (side_of(inside.cell) <= rules_.leaf_per_size * inside.low) return false;
-    return rules_.resolve_surface || inside.high > kPlainRatio * inside.low ||
-           inside.cell.level() < rules_.plain_level;
+    return rules_.resolve_surface || inside.high > kPlainRatio * inside.low || inside.cell.level() < rules_.plain_level;
   }
 
   /// What lies in one cell of kTopLevel is a thread's own. Where a cell is not divided none inside it would be.
@@ -120,7 +119,10 @@ class GridMaker {
       parts.push_back(samples_within(rest.front().cell.ancestor(kTopLevel), rest));
     std::vector<Inside> tops(parts.size(), Inside({}, std::span<const Sample>{}));
     parallel_for(
-        parts.size(), [&](std::size_t i) { tops[i] = {parts[i].front().cell.ancestor(kTopLevel), parts[i]}; },
+        parts.size(),
+        [&](std::size_t i) {
+          tops[i] = {parts[i].front().cell.ancestor(kTopLevel), parts[i]};
+        },
         Split::kSingly);
     return tops;
   }
@@ -173,8 +175,8 @@ class GridMaker {
     return sizes;
   }
 
-  /// Calls visit(corner, cap, size) for each free corner that a leaf's values depend on, with the lowest cap by a sample
-  /// in the leaf, and the least size of those that have it.
+  /// Calls visit(corner, cap, size) for each free corner that a leaf's values depend on, with the lowest cap by a
+  /// sample in the leaf, and the least size of those that have it.
   template <class Visit>
   void for_each_cap(const Visit& visit) const {
     parallel_ranges(tree_.size(), Split::kAdaptive, [&](std::size_t begin, std::size_t end) {

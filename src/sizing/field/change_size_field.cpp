@@ -66,8 +66,8 @@ SizeField scaled(const SizeField& sizes, double factor, const RunContext& contex
   if (grid == nullptr)
     return SizeFunction::field([sizes, factor](Vec3 p) { return sizes.at(p) * factor; }, sizes.min_size() * factor,
                                sizes.max_size() * factor, SizeFunction::behind(sizes).gradation);
-  auto copy = std::make_shared<OctreeField>(
-      with_sizes(*grid, [&](std::size_t l, int k) { return grid->h[l][k] * factor; }));
+  auto copy =
+      std::make_shared<OctreeField>(with_sizes(*grid, [&](std::size_t l, int k) { return grid->h[l][k] * factor; }));
   copy->source = parallel_copy(grid->source);
   if (factor > 1) grade_again(*copy, context);
   return SizeFunction::field(std::move(copy));

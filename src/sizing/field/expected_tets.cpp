@@ -18,8 +18,11 @@
 
 #include <algorithm>
 #include <array>
+#include <bit>
 #include <cmath>
+#include <cstdint>
 #include <map>
+#include <numbers>
 #include <optional>
 #include <span>
 #include <vector>
@@ -47,8 +50,29 @@ constexpr double kWorthCounting = 0.05;
 double size_of_step(int step) {
   return elementary::exp2((step - kStepsBelow + 0.5) / kStepsPerOctave);
 }
+/// The logarithm of a normal h > 0 to base 2 but for 1e-7: of a mantissa between the roots of 1/2 and 2 by the series
+/// of log((1 + t) / (1 - t)).
+double rough_log2(double h) {
+  const auto bits = std::bit_cast<std::uint64_t>(h);
+  const auto exponent = static_cast<double>(static_cast<std::int64_t>(bits >> 52) - 1023);
+  const double m = std::bit_cast<double>((bits & 0x000f'ffff'ffff'ffffu) | 0x3ff0'0000'0000'0000u);
+  const bool is_upper = m > std::numbers::sqrt2;
+  const double t = ((is_upper ? 0.5 * m : m) - 1) / ((is_upper ? 0.5 * m : m) + 1), t2 = t * t;
+  const double log = 2 * std::numbers::log2e * t * (1 + t2 * (1.0 / 3 + t2 * (1.0 / 5 + t2 * (1.0 / 7))));
+  return exponent + (is_upper ? 1 : 0) + log;
+}
+
+/// Where a rough logarithm leaves no doubt it decides.
+double floor_of_log2(double h) {
+  constexpr double kInDoubt = 1e-4;
+  const double rough = rough_log2(h) * kStepsPerOctave, down = std::floor(rough);
+  if (h >= 0x1p-1000 && rough - down > kInDoubt && rough - down < 1 - kInDoubt) [[likely]]
+    return down;
+  return std::floor(elementary::log2(h) * kStepsPerOctave);
+}
+
 std::size_t step_of_size(double h) {
-  const auto step = static_cast<int>(std::floor(elementary::log2(h) * kStepsPerOctave));
+  const auto step = static_cast<int>(floor_of_log2(h));
   return static_cast<std::size_t>(std::clamp(step + kStepsBelow, 0, kSteps - 1));
 }
 
@@ -115,8 +139,8 @@ double choose_cell(const Demand& demand) {
         const double octaves = (static_cast<double>(i) - kStepsPerOctave / 2) / kStepsPerOctave;
         const double cell = demand.surface_size * elementary::exp2(octaves);
         const double miss = asked > 0 ? std::abs(elementary::log(elements_inside(demand, cell) / asked)) : 0;
-        choices[i] = {
-            cell, miss + kMissPerOctave * std::abs(octaves) + kMissPerMixed * (1 - largest_share(demand, cell))};
+        choices[i] = {cell,
+                      miss + kMissPerOctave * std::abs(octaves) + kMissPerMixed * (1 - largest_share(demand, cell))};
       },
       Split::kSingly);
   double best = demand.surface_size, least = HUGE_VAL;

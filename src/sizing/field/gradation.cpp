@@ -262,9 +262,19 @@ class Grader {
     for (const std::uint32_t i : corners_.leaves[corner]) SharedValue(dirty_[rank_[i / 8]]).store(1);
   }
 
-  static double squared_slope(const std::array<double, 8>& h, int c) {
-    const double x = h[c ^ 1] - h[c], y = h[c ^ 2] - h[c], z = h[c ^ 4] - h[c];
-    return x * x + y * y + z * z;
+  /// At each corner of a leaf. Both ends of an edge rise as much, one up and one down.
+  static std::array<double, 8> squared_slopes(const std::array<double, 8>& h) {
+    std::array<double, 8> x, y, z, slopes;
+    for (std::size_t c = 0; c < 8; c += 2) x[c] = x[c + 1] = squared(h[c + 1] - h[c]);
+    for (const std::size_t c : {0, 1, 4, 5}) y[c] = y[c + 2] = squared(h[c + 2] - h[c]);
+    for (std::size_t c = 0; c < 4; ++c) z[c] = z[c + 4] = squared(h[c + 4] - h[c]);
+    for (std::size_t c = 0; c < 8; ++c) slopes[c] = x[c] + y[c] + z[c];
+    return slopes;
+  }
+  static double squared(double x) { return x * x; }
+  double steepest_in(std::uint32_t leaf) const {
+    const std::array<double, 8> slopes = squared_slopes(values_of(leaf));
+    return *std::ranges::max_element(slopes);
   }
 
   template <class OfFree>
@@ -283,12 +293,7 @@ class Grader {
     return bound * bound * (1 + kTolerance) * (1 + kTolerance);
   }
 
-  bool is_steep(std::uint32_t leaf) const {
-    const std::array<double, 8> h = values_of(leaf);
-    for (int c = 0; c < 8; ++c)
-      if (squared_slope(h, c) > tolerated(leaf)) return true;
-    return false;
-  }
+  bool is_steep(std::uint32_t leaf) const { return steepest_in(leaf) > tolerated(leaf); }
 
   /// Leaves that are not steep as the round begins need a look only if a cut touches them, which marks them.
   void forget_gentle_leaves() {
@@ -333,8 +338,7 @@ class Grader {
         in_turn_[turn].size(), kMarksAtOnce,
         [&](std::size_t begin, std::size_t end, std::vector<std::uint32_t>& found) {
           const auto next = [&](const std::uint8_t* from) {
-            return static_cast<const std::uint8_t*>(
-                std::memchr(from, 1, static_cast<std::size_t>(first + end - from)));
+            return static_cast<const std::uint8_t*>(std::memchr(from, 1, static_cast<std::size_t>(first + end - from)));
           };
           for (const std::uint8_t* at = next(first + begin); at != nullptr; at = next(at + 1)) {
             found.push_back(in_turn_.items()[static_cast<std::size_t>(at - dirty_.data())]);
@@ -345,10 +349,11 @@ class Grader {
 
   /// What these leaves ask of their corners.
   RawVector<Cut> cuts_of(const RawVector<std::uint32_t>& leaves, bool gently) const {
-    return parallel_collect<Cut, RawVector<Cut>>(
-        leaves.size(), kLeavesAtOnce, [&](std::size_t begin, std::size_t end, std::vector<Cut>& cuts) {
-          for (std::size_t i = begin; i < end; ++i) collect_cuts(leaves[i], gently, cuts);
-        });
+    return parallel_collect<Cut, RawVector<Cut>>(leaves.size(), kLeavesAtOnce,
+                                                 [&](std::size_t begin, std::size_t end, std::vector<Cut>& cuts) {
+                                                   for (std::size_t i = begin; i < end; ++i)
+                                                     collect_cuts(leaves[i], gently, cuts);
+                                                 });
   }
 
   /// Of the cuts of a corner the lowest holds; of several such, the least source.
@@ -376,11 +381,13 @@ class Grader {
         if (cuts[i].corner == corner) return cuts[i].value;
       return value_[corner];
     };
-    std::array<double, 8> h = values_of(leaf);
+    std::array<double, 8> h = values_of(leaf), slopes = squared_slopes(h);
+    const double most = tolerated(leaf);
     for (int c = 0; c < 8; ++c) {
-      if (squared_slope(h, c) <= tolerated(leaf)) continue;
+      if (slopes[static_cast<std::size_t>(c)] <= most) continue;
       cut(leaf, c, level_of_cut(h, c, bound_of(leaf)), h, now, gently, cuts);
       h = values_of(leaf, now);
+      slopes = squared_slopes(h);
     }
   }
 
@@ -438,11 +445,8 @@ class Grader {
   void shrink() {
     const double steepest = parallel_max(tree_.size(), 1.0, [&](std::size_t l) {
       const auto leaf = static_cast<std::uint32_t>(l);
-      const std::array<double, 8> h = values_of(leaf);
       const double bound = bound_of(leaf);
-      double most = 0;
-      for (int c = 0; c < 8; ++c) most = std::max(most, squared_slope(h, c) / (bound * bound));
-      return most;
+      return steepest_in(leaf) / (bound * bound);
     });
     if (steepest == 1) return;
     const double least = -parallel_max(value_.size(), -HUGE_VAL, [&](std::size_t c) { return -value_[c]; });
@@ -453,13 +457,13 @@ class Grader {
   const Octree& tree_;
   const OctreeCorners& corners_;
   double slope_;
-  RawVector<double> value_;         ///< per corner; where free
-  RawVector<double> source_;        ///< likewise: what the source asked for that limits it
-  RawVector<std::uint8_t> plain_;   ///< per leaf
-  Groups<> in_turn_;                ///< the leaves of each colour of each group
-  RawVector<std::uint32_t> rank_;   ///< per leaf: where it is among these
-  RawVector<std::uint8_t> dirty_;   ///< in that order
-  Groups<> dependents_;             ///< per free corner: the hanging corners that it is part of
+  RawVector<double> value_;        ///< per corner; where free
+  RawVector<double> source_;       ///< likewise: what the source asked for that limits it
+  RawVector<std::uint8_t> plain_;  ///< per leaf
+  Groups<> in_turn_;               ///< the leaves of each colour of each group
+  RawVector<std::uint32_t> rank_;  ///< per leaf: where it is among these
+  RawVector<std::uint8_t> dirty_;  ///< in that order
+  Groups<> dependents_;            ///< per free corner: the hanging corners that it is part of
 };
 
 }  // namespace

@@ -95,9 +95,8 @@ class GridCapper {
   /// The old size at each corner, lowered by the caps near it.
   RawVector<double> corner_limits(const Octree& tree) const {
     RawVector<double> limit(corners_.size());
-    parallel_for(corners_.size(), [&](std::size_t c) {
-      limit[c] = old_.at(old_.root.position(corners_.position[c])) / old_.root.side;
-    });
+    parallel_for(corners_.size(),
+                 [&](std::size_t c) { limit[c] = old_.at(old_.root.position(corners_.position[c])) / old_.root.side; });
     std::size_t next = 0;
     lower(tree, OctreeKey::root(), all_caps(), next, limit);
     return limit;

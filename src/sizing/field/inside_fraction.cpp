@@ -143,8 +143,7 @@ class Haar {
     return sum / (axes * s * s * s);
   }
 
-  void spread(OctreeKey cell, double average, std::size_t inner, std::size_t begin,
-              RawVector<double>& fraction) const {
+  void spread(OctreeKey cell, double average, std::size_t inner, std::size_t begin, RawVector<double>& fraction) const {
     const Inner& in = inner_[inner];
     std::array<double, 8> c{};
     for (int e = 1; e < 8; ++e) c[e] = coefficient(in, e, 1.0 / (1u << cell.level()));
@@ -179,8 +178,7 @@ class Haar {
 };
 
 /// In each leaf its pieces are added up in their order.
-RawVector<Moments> moments_of_leaves(const RootCube& root, const Octree& tree,
-                                     std::span<const SurfacePiece> pieces) {
+RawVector<Moments> moments_of_leaves(const RootCube& root, const Octree& tree, std::span<const SurfacePiece> pieces) {
   RawVector<Moments> of_leaf = parallel_filled(tree.size(), Moments{});
   const auto add = [&](const SurfacePiece& piece) {
     of_leaf[piece.leaf].add(piece.n / (root.side * root.side),

@@ -235,9 +235,8 @@ Buckets<HangingCorner> hanging_corners(const Octree& tree, const OctreeCorners& 
           if (corners.leaves[c].size() < static_cast<std::size_t>(octants_inside(corners.position[c])))
             found.push_back({c, larger_leaf_at(tree, corners.position[c])});
       });
-  return {hanging.size(), OctreeKey::kMaxLevel + 1, [&](std::size_t i, const auto& add) {
-            add(static_cast<std::size_t>(hanging[i].on.level()), hanging[i]);
-          }};
+  return {hanging.size(), OctreeKey::kMaxLevel + 1,
+          [&](std::size_t i, const auto& add) { add(static_cast<std::size_t>(hanging[i].on.level()), hanging[i]); }};
 }
 
 /// Writes them corner by corner.
@@ -249,13 +248,14 @@ void set_shares(const ShareFinder& found, OctreeCorners& corners) {
       if (found.hangs(c)) sum += found[c].size();
     return sum;
   };
-  const std::size_t all = parallel_number(corners.size(), count, [&](std::size_t begin, std::size_t end, std::size_t at) {
-    for (std::size_t c = begin; c < end; ++c) {
-      corners.first_share[c] = static_cast<std::uint32_t>(at);
-      if (found.hangs(c)) at += found[c].size();
-    }
-    return at;
-  });
+  const std::size_t all =
+      parallel_number(corners.size(), count, [&](std::size_t begin, std::size_t end, std::size_t at) {
+        for (std::size_t c = begin; c < end; ++c) {
+          corners.first_share[c] = static_cast<std::uint32_t>(at);
+          if (found.hangs(c)) at += found[c].size();
+        }
+        return at;
+      });
   corners.first_share[corners.size()] = static_cast<std::uint32_t>(all);
   corners.shares.resize(all);
   parallel_for(corners.size(), [&](std::size_t c) {

@@ -8,6 +8,7 @@
 #include <cmath>
 #include <iterator>
 #include <numbers>
+#include <numeric>
 
 namespace octafront {
 
@@ -46,20 +47,20 @@ constexpr double kSkipped = 1e-7;
 
 ThinWalls::Look ThinWalls::look(std::span<const SurfacePiece> pieces, std::span<const double> sizes,
                                 std::optional<std::size_t> triangles) const {
-  RawVector<double> squares(pieces.size());
+  RawVector<double> squares(pieces.size());  // then those of all pieces up to each
   parallel_for(pieces.size(), [&](std::size_t i) { squares[i] = length(pieces[i].n) / (sizes[i] * sizes[i]); });
-  double all = 0;
-  for (const double of_piece : squares) all += of_piece;
+  std::partial_sum(squares.begin(), squares.end(), squares.begin());
+  const double all = squares.empty() ? 0 : squares.back();
   Look seen{{}, triangles ? static_cast<double>(*triangles) / all : kTrianglesPerSquare};
   const double step = all / kPlacesOfWalls;
   std::vector<Place>& looked_at = seen.places;
-  double passed = 0, next = 0.5 * step;
-  for (std::size_t i = 0; i < pieces.size(); ++i) {
-    passed += squares[i];
-    if (!(passed > next)) continue;
-    const auto count = std::ceil((passed - next) / step);
+  double next = 0.5 * step;
+  for (auto passed = squares.begin(); passed != squares.end(); ++passed) {
+    passed = std::upper_bound(passed, squares.end(), next);
+    if (passed == squares.end()) break;
+    const auto count = std::ceil((*passed - next) / step);
     next += count * step;
-    looked_at.push_back({i, count * step});
+    looked_at.push_back({static_cast<std::size_t>(passed - squares.begin()), count * step});
   }
   parallel_for(looked_at.size(), [&](std::size_t i) {
     const std::size_t k = looked_at[i].piece;

@@ -93,8 +93,7 @@ constexpr int kFloorSteps = 8;
 
 /// The sizes of `grid` raised to a floor, but not above `most`.
 OctreeField raised_grid(const OctreeField& grid, const RawVector<std::array<double, 8>>& most, double floor) {
-  return with_sizes(grid,
-                    [&](std::size_t l, int k) { return std::max(grid.h[l][k], std::min(most[l][k], floor)); });
+  return with_sizes(grid, [&](std::size_t l, int k) { return std::max(grid.h[l][k], std::min(most[l][k], floor)); });
 }
 
 }  // namespace

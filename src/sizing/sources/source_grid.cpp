@@ -20,8 +20,7 @@ constexpr double kPlainSamples = 64;
 RawVector<SizeSample> even_samples(const SurfaceMesh& surface, double h, const RootCube& root,
                                    const RunContext& context) {
   const double spacing = std::max(h, root.side / kPlainSamples);
-  auto samples =
-      sample_surface(surface, std::vector<double>(surface.triangles.size(), spacing), {}, context);
+  auto samples = sample_surface(surface, std::vector<double>(surface.triangles.size(), spacing), {}, context);
   parallel_for(samples.size(), [&](std::size_t i) { samples[i].h = h; });
   return samples;
 }
@@ -66,8 +65,8 @@ SizeField source_grid(const SurfaceMesh& surface, const WantedSizes& wanted, con
   rules.leaf_per_size *= look.coarser;
   rules.keep_sources = rules.keep_sources || look.keeps_sources;
   RawVector<SizeSample> samples = wanted.even && !rules.resolve_surface
-                                        ? even_samples(surface, wanted.face.front(), root, context)
-                                        : sample_surface(surface, wanted.face, wanted.at_place, context);
+                                      ? even_samples(surface, wanted.face.front(), root, context)
+                                      : sample_surface(surface, wanted.face, wanted.at_place, context);
   samples.insert(samples.end(), wanted.points.begin(), wanted.points.end());
   auto grid = make_background_grid(root, samples, rules, context);
   return SizeFunction::field(with_regions(std::move(grid), options, context));

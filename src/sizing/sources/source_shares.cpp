@@ -82,10 +82,11 @@ RawVector<SourceShares::Place> SourceShares::places_on(const SurfaceMesh& surfac
         if (u + v + 1 < parts) add(3 * u + 2, 3 * v + 2);
       }
   };
-  return parallel_collect<Place, RawVector<Place>>(
-      surface.triangles.size(), kFaces, [&](std::size_t begin, std::size_t end, std::vector<Place>& places) {
-        for (std::size_t f = begin; f < end; ++f) add_places(static_cast<std::uint32_t>(f), places);
-      });
+  return parallel_collect<Place, RawVector<Place>>(surface.triangles.size(), kFaces,
+                                                   [&](std::size_t begin, std::size_t end, std::vector<Place>& places) {
+                                                     for (std::size_t f = begin; f < end; ++f)
+                                                       add_places(static_cast<std::uint32_t>(f), places);
+                                                   });
 }
 
 std::uint8_t SourceShares::number_of(const std::string& name) {

@@ -45,8 +45,7 @@ double step_on_strips(const SurfaceMesh& surface, const std::vector<double>& fac
 template <class Samples>
 class Sampler {
  public:
-  Sampler(const std::vector<double>& face_size, const SizeAtPlace& size_at, double step,
-          Samples& samples)
+  Sampler(const std::vector<double>& face_size, const SizeAtPlace& size_at, double step, Samples& samples)
       : face_size_(face_size), size_at_(size_at), step_(step), samples_(samples) {}
 
   void sample(Vec3 a, Vec3 b, Vec3 c, Vec3 n, std::uint32_t face) {

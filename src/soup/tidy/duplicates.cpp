@@ -33,7 +33,8 @@ void find_groups_at(const std::vector<Triangle>& triangles, const EdgeTable& tab
   if (table.uses(e).size() < 2) return;
   seen.clear();
   for (const std::uint32_t h : table.uses(e))
-    if (is_first_edge(triangles[h / 3], table.edges[e])) seen.push_back({apex(triangles[h / 3], table.edges[e]), h / 3});
+    if (is_first_edge(triangles[h / 3], table.edges[e]))
+      seen.push_back({apex(triangles[h / 3], table.edges[e]), h / 3});
   std::sort(seen.begin(), seen.end());
   for (std::size_t i = 0; i + 1 < seen.size();) {
     std::size_t end = i + 1;
@@ -49,11 +50,12 @@ void find_groups_at(const std::vector<Triangle>& triangles, const EdgeTable& tab
 /// Triangles with the same three vertices share their first edge, and their apex seen from there.
 std::vector<Group> find_groups(const std::vector<Triangle>& triangles, const EdgeTable& table) {
   constexpr std::size_t kEdges = 2048;
-  return parallel_collect<Group>(
-      table.size(), kEdges, [&](std::size_t begin, std::size_t end, std::vector<Group>& groups) {
-        std::vector<std::pair<VertexIndex, std::uint32_t>> seen;  // apex, triangle
-        for (std::size_t e = begin; e < end; ++e) find_groups_at(triangles, table, e, seen, groups);
-      });
+  return parallel_collect<Group>(table.size(), kEdges,
+                                 [&](std::size_t begin, std::size_t end, std::vector<Group>& groups) {
+                                   std::vector<std::pair<VertexIndex, std::uint32_t>> seen;  // apex, triangle
+                                   for (std::size_t e = begin; e < end; ++e)
+                                     find_groups_at(triangles, table, e, seen, groups);
+                                 });
 }
 
 /// Groups that hang together over edges without any other face form a sheet. Whether a sheet stays, one triangle of

@@ -98,12 +98,14 @@ Box3 box_of_faces(const SurfaceMesh& soup) {
     Box3 box;
     Part& operator+=(const Part& other) { return box.add(other.box), *this; }
   };
-  return parallel_sum(soup.triangles.size(), [&](std::size_t begin, std::size_t end) {
-           Part part;
-           for (std::size_t t = begin; t < end; ++t)
-             for (const VertexIndex v : soup.triangles[t]) part.box.add(soup.points[v]);
-           return part;
-         }).box;
+  return parallel_sum(soup.triangles.size(),
+                      [&](std::size_t begin, std::size_t end) {
+                        Part part;
+                        for (std::size_t t = begin; t < end; ++t)
+                          for (const VertexIndex v : soup.triangles[t]) part.box.add(soup.points[v]);
+                        return part;
+                      })
+      .box;
 }
 
 }  // namespace

@@ -1,7 +1,6 @@
 #include <octafront/io.h>
 
 #include "base/core/thread_limit.h"
-#include "formats/files/formats.h"
 #include "formats/small_files.h"
 #include "support/named_surfaces.h"
 
@@ -110,9 +109,10 @@ TEST(ReadInRanges, ObjOfWhatNeedsTheLinesBefore) {
 
 TEST(ReadInRanges, ComplaintsNameTheLine) {
   const std::string off = off_text() + "\n", obj = obj_text();
-  const std::string bad_off = replaced(off, "\n# faces\n3 ", "\n# faces\n3 x"), bad_obj = replaced(obj, "\nf 1 ", "\nf x ");
-  for (const auto& [text, name] : {std::pair(bad_off, "s.off"), std::pair(bad_obj, "s.obj"),
-                                   std::pair(obj + "f 1 2 999999\n", "s.obj")}) {
+  const std::string bad_off = replaced(off, "\n# faces\n3 ", "\n# faces\n3 x"),
+                    bad_obj = replaced(obj, "\nf 1 ", "\nf x ");
+  for (const auto& [text, name] :
+       {std::pair(bad_off, "s.off"), std::pair(bad_obj, "s.obj"), std::pair(obj + "f 1 2 999999\n", "s.obj")}) {
     const std::string one = message_by(1, text, name);
     EXPECT_NE(one.find("line"), std::string::npos) << one;
     EXPECT_EQ(message_by(4, text, name), one);
