@@ -12,8 +12,7 @@ Volume(1) = {{1}};
 Mesh.Algorithm3D = {algorithm};
 Mesh.Optimize = {optimize};
 Mesh.MeshSizeExtendFromBoundary = 1;
-Mesh.MeshSizeMax = {size:.9g};
-General.NumThreads = {threads};
+{held}General.NumThreads = {threads};
 Mesh.MaxNumThreads3D = {threads};
 Mesh.Binary = 1;
 Mesh.SaveAll = 1;
@@ -38,13 +37,14 @@ Mesh.SaveAll = 1;
 """
 
 
-def fill(surface, folder, timeout, algorithm, optimize, threads):
-    """Keeps the triangles of `surface` (OFF). The mesh is binary MSH 4.1."""
+def fill(surface, folder, timeout, algorithm, optimize, threads, held=True):
+    """Keeps the triangles of `surface` (OFF). Sizes are extended from them; `held`: and nowhere larger than their mean
+    edge. The mesh is binary MSH 4.1."""
     folder = pathlib.Path(folder)
     points, triangles = read_off(surface)
     surfaces.write_msh(folder / "in.msh", points, triangles)
-    (folder / "in.geo").write_text(SCRIPT.format(algorithm=algorithm, optimize=int(optimize), threads=threads,
-                                                 size=surfaces.mean_edge(points, triangles)))
+    held = f"Mesh.MeshSizeMax = {surfaces.mean_edge(points, triangles):.9g};\n" if held else ""
+    (folder / "in.geo").write_text(SCRIPT.format(algorithm=algorithm, optimize=int(optimize), threads=threads, held=held))
     return run(folder, timeout, threads)
 
 
@@ -70,8 +70,8 @@ def run(folder, timeout, threads):
     return finish(outcome, folder / "out.msh")
 
 
-def fill_hxt(surface, folder, timeout, optimize=True, threads=1):
-    return fill(surface, folder, timeout, HXT, optimize, threads)
+def fill_hxt(surface, folder, timeout, optimize=True, threads=1, held=True):
+    return fill(surface, folder, timeout, HXT, optimize, threads, held)
 
 
 def fill_delaunay(surface, folder, timeout, optimize=True, threads=1):

@@ -81,7 +81,7 @@ Groups<> group_in_stretches(std::size_t owners, std::uint32_t items, const Owner
       for (std::size_t o = begin; o < end; ++o) sum += of_stretch[o];
     return sum;
   };
-  const std::size_t sum = parallel_number(owners, count, [&](std::size_t begin, std::size_t end, std::size_t from) {
+  const std::size_t sum = number_in_blocks(owners, count, [&](std::size_t begin, std::size_t end, std::size_t from) {
     auto number = static_cast<std::uint32_t>(from);
     for (std::size_t o = begin; o < end; ++o) {
       first[o] = number;

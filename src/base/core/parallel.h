@@ -120,6 +120,25 @@ All parallel_collect(std::size_t n, std::size_t range, const Collect& collect) {
   return joined<All>(parts);
 }
 
+/// Calls number(i, k) for the k-th i < n for which test(i) is true, and returns how many there are. test(i) is called
+/// twice.
+template <class Test, class Number>
+std::size_t parallel_number(std::size_t n, const Test& test, const Number& number) {
+  constexpr std::size_t kRange = 16384;
+  std::vector<std::size_t> first((n + kRange - 1) / kRange + 1, 0);
+  const auto for_each_range = [&](const auto& visit) {
+    parallel_for(first.size() - 1, [&](std::size_t r) {
+      for (std::size_t i = r * kRange; i < std::min(n, (r + 1) * kRange); ++i)
+        if (test(i)) visit(r, i);
+    });
+  };
+  for_each_range([&](std::size_t r, std::size_t) { ++first[r + 1]; });
+  for (std::size_t r = 1; r < first.size(); ++r) first[r] += first[r - 1];
+  const std::size_t all = first.back();
+  for_each_range([&](std::size_t r, std::size_t i) { number(i, first[r]++); });
+  return all;
+}
+
 /// std::sort by several threads: items that lie between some of them are put side by side, and each such stretch is
 /// sorted apart. REQUIRES a total order: nothing else makes the result the same on any number of threads.
 template <class Items, class Less = std::less<typename Items::value_type>>

@@ -67,7 +67,7 @@ Number parallel_max(std::size_t n, Number none, const Of& of) {
 /// Numbers what there is of [0, n): count(begin, end) says how many things a range has, number(begin, end, first) gives
 /// them the numbers from `first` on and returns the next one. Returns how many there are in all.
 template <class Count, class Number>
-std::size_t parallel_number(std::size_t n, const Count& count, const Number& number) {
+std::size_t number_in_blocks(std::size_t n, const Count& count, const Number& number) {
   if (thread_count() == 1 || n <= kNumbersAtOnce) return number(std::size_t{0}, n, std::size_t{0});
   std::vector<std::size_t> first((n + kNumbersAtOnce - 1) / kNumbersAtOnce);
   const auto for_each_block = [&](const auto& visit) {

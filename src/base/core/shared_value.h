@@ -15,6 +15,10 @@ class SharedValue {
     return value;
   }
   void store(T value) const { __atomic_store(value_, &value, __ATOMIC_RELAXED); }
+  /// Whether it was `known`, and is `value` now.
+  bool exchange_if(T known, T value) const {
+    return __atomic_compare_exchange(value_, &known, &value, false, __ATOMIC_RELAXED, __ATOMIC_RELAXED);
+  }
   /// What it was.
   T exchange(T value) const { return __atomic_exchange_n(value_, value, __ATOMIC_RELAXED); }
   void lower_to(T value) const {

@@ -73,13 +73,14 @@ EdgeTable make_edge_table(std::size_t vertices, std::span<const Triangle> triang
   EdgeTable table;
   table.edges.resize(half_edges);
   table.first.resize(half_edges + std::size_t{1});
-  const std::size_t edges = parallel_number(vertices, count, [&](std::size_t begin, std::size_t end, std::size_t next) {
-    for_each_edge(begin, end, [&](std::size_t v, std::size_t k) {
-      table.edges[next] = {static_cast<VertexIndex>(v), uses_of(v)[k].larger};
-      table.first[next++] = static_cast<std::uint32_t>(of_vertex.first(v) + k);
-    });
-    return next;
-  });
+  const std::size_t edges =
+      number_in_blocks(vertices, count, [&](std::size_t begin, std::size_t end, std::size_t next) {
+        for_each_edge(begin, end, [&](std::size_t v, std::size_t k) {
+          table.edges[next] = {static_cast<VertexIndex>(v), uses_of(v)[k].larger};
+          table.first[next++] = static_cast<std::uint32_t>(of_vertex.first(v) + k);
+        });
+        return next;
+      });
   table.edges.resize(edges), table.edges.shrink_to_fit();
   table.first[edges] = half_edges;
   table.first.resize(edges + 1), table.first.shrink_to_fit();

@@ -161,10 +161,19 @@ class BlockRun {
   std::size_t turns_ = 0;
 };
 
+/// Where nothing waits all faces stay what they are, in the front's numbers.
+BlockResult untouched(const FrontState& state, const FrontBlock& block) {
+  BlockResult result;
+  const std::size_t first_passive = state.queue.size() + state.held.size();
+  for (const FrontBlock::Member m : block.members)
+    if (m.owned) (m.face < first_passive ? result.held : result.passive).push_back(state.face(m.face));
+  return result;
+}
+
 }  // namespace
 
 BlockResult advance_block(const FrontPhase& phase, const FrontBlock& block) {
-  return BlockRun(phase, block).run();
+  return block.queued > 0 ? BlockRun(phase, block).run() : untouched(phase.front, block);
 }
 
 }  // namespace octafront

@@ -21,8 +21,9 @@ struct FrontPhase {
 
 /// What a run of one block made. Vertices are numbered by the block: first those that it found, then its own.
 struct BlockResult {
-  std::vector<VertexIndex> found;  ///< the front's numbers of the vertices that it found
-  std::vector<Vec3> points;        ///< its own
+  std::vector<VertexIndex>
+      found;                 ///< the front's numbers of the vertices that it found; none: faces have these already
+  std::vector<Vec3> points;  ///< its own
   std::vector<float> sizes;
   std::vector<Tet> tets;
   std::vector<WaitingFace> queue;

@@ -32,16 +32,15 @@ namespace {
 std::vector<std::uint32_t> spatial_order(const SurfaceMesh& surface, const Box3& box) {
   const Vec3 e = box.extent();
   const double scale = 1048575.0 / std::max({e.x, e.y, e.z, 1e-300});
-  std::vector<std::pair<std::uint64_t, std::uint32_t>> keyed;
-  keyed.reserve(surface.triangles.size());
-  for (std::uint32_t t = 0; t < surface.triangles.size(); ++t) {
+  std::vector<std::pair<std::uint64_t, std::uint32_t>> keyed(surface.triangles.size());
+  parallel_for(keyed.size(), [&](std::size_t t) {
     const auto& [a, b, c] = surface.triangles[t];
     const Vec3 m = ((surface.points[a] + surface.points[b] + surface.points[c]) / 3 - box.lo) * scale;
-    keyed.emplace_back(
+    keyed[t] = {
         morton_code(static_cast<std::uint64_t>(m.x), static_cast<std::uint64_t>(m.y), static_cast<std::uint64_t>(m.z)),
-        t);
-  }
-  std::sort(keyed.begin(), keyed.end());
+        static_cast<std::uint32_t>(t)};
+  });
+  parallel_sort(keyed);
   std::vector<std::uint32_t> order;
   order.reserve(keyed.size());
   for (const auto& [key, t] : keyed) order.push_back(t);
@@ -90,10 +89,14 @@ void add_core(FrontState& front, LatticeCore core, const SurfaceMesh& surface, c
       front.regions > 1 ? regions_of_core(core, surface, comm) : std::vector<std::uint32_t>(core.points.size(), 0);
   const auto first = static_cast<VertexIndex>(front.points.size());
   front.points.insert(front.points.end(), core.points.begin(), core.points.end());
-  for (Tet& t : core.tets)
-    for (VertexIndex& v : t) v += first;
-  front.passive.reserve(core.skin.size());
-  for (const auto& [a, b, c] : core.skin) front.passive.push_back({{a + first, c + first, b + first}, region[a]});
+  parallel_for(core.tets.size(), [&](std::size_t t) {
+    for (VertexIndex& v : core.tets[t]) v += first;
+  });
+  front.passive.resize(core.skin.size());
+  parallel_for(core.skin.size(), [&](std::size_t s) {
+    const auto& [a, b, c] = core.skin[s];
+    front.passive[s] = {{a + first, c + first, b + first}, region[a]};
+  });
   std::array<std::int64_t, 1> tets{static_cast<std::int64_t>(core.tets.size())};
   comm.sum(tets, "core");
   front.work.tets = static_cast<std::size_t>(tets[0]);

@@ -161,14 +161,18 @@ void ClearSites::find_inside() {
     }
   });
   DisjointSets components(tree.size());
-  for (std::uint32_t i = 0; i < tree.size(); ++i)
+  parallel_for(tree.size(), [&](std::size_t i) {
     for (const std::uint32_t j : upper[i])
-      if (j != kNone) components.join(i, j);
+      if (j != kNone) components.join_shared(static_cast<std::uint32_t>(i), j);
+  });
   inside_.resize(tree.size());
-  for (std::uint32_t i = 0; i < tree.size(); ++i) {
-    const std::uint32_t root = components.find(i);
-    inside_[i] = root == i ? distance_[2 * i] != 0 && contains(position_of(2 * i)) : inside_[root];
-  }
+  const auto root_of = [&](std::size_t i) { return components.find_shared(static_cast<std::uint32_t>(i)); };
+  parallel_for(tree.size(), [&](std::size_t i) {
+    if (root_of(i) == i) inside_[i] = distance_[2 * i] != 0 && contains(position_of(static_cast<SiteNumber>(2 * i)));
+  });
+  parallel_for(tree.size(), [&](std::size_t i) {
+    if (const std::uint32_t root = root_of(i); root != i) inside_[i] = inside_[root];
+  });
 }
 
 bool ClearSites::is_clear(const std::array<Vec3, 4>& corners, float least_distance) const {

@@ -180,8 +180,9 @@ class CoreBuilder {
     });
     join_marks(comm_, is_used, "sites of the lattice");
     vertex_.assign(is_used.size(), kNone);
-    for (std::size_t s = 0; s < is_used.size(); ++s)
-      if (is_used[s] != 0) vertex_[s] = first_hanging_++;
+    first_hanging_ = static_cast<VertexIndex>(parallel_number(
+        is_used.size(), [&](std::size_t s) { return is_used[s] != 0; },
+        [&](std::size_t s, std::size_t number) { vertex_[s] = static_cast<VertexIndex>(number); }));
     for (std::size_t c = 0; c < chunks_.size(); ++c)
       for (std::size_t i = 0; i < chunks_[c].hanging.size(); ++i)
         if (hanging_is_used[c][i]) hanging_.push_back(chunks_[c].hanging[i]);

@@ -25,7 +25,7 @@ class Numbering {
       for (std::size_t i = begin; i < end; ++i) sum += is_first(i);
       return sum;
     };
-    corners_ = parallel_number(first_.size(), count, [this](std::size_t begin, std::size_t end, std::size_t next) {
+    corners_ = number_in_blocks(first_.size(), count, [this](std::size_t begin, std::size_t end, std::size_t next) {
       for (std::size_t i = begin; i < end; ++i)
         if (is_first(i)) number_[i] = static_cast<std::uint32_t>(next++);
       return next;
@@ -249,7 +249,7 @@ void set_shares(const ShareFinder& found, OctreeCorners& corners) {
     return sum;
   };
   const std::size_t all =
-      parallel_number(corners.size(), count, [&](std::size_t begin, std::size_t end, std::size_t at) {
+      number_in_blocks(corners.size(), count, [&](std::size_t begin, std::size_t end, std::size_t at) {
         for (std::size_t c = begin; c < end; ++c) {
           corners.first_share[c] = static_cast<std::uint32_t>(at);
           if (found.hangs(c)) at += found[c].size();

@@ -66,18 +66,20 @@ bool agree_as_they_are(std::span<const Triangle> triangles, const EdgeTable& tab
 
 Pieces pieces_without_turning(std::size_t triangles, const EdgeTable& table) {
   DisjointSets joined(triangles);
-  for (std::size_t e = 0; e < table.size(); ++e)
-    if (table.uses(e).size() == 2) joined.join(table.uses(e)[0] / 3, table.uses(e)[1] / 3);
+  parallel_for(table.size(), [&](std::size_t e) {
+    if (table.uses(e).size() == 2) joined.join_shared(table.uses(e)[0] / 3, table.uses(e)[1] / 3);
+  });
+  const auto first_of = [&](std::size_t t) { return joined.find_shared(static_cast<std::uint32_t>(t)); };
   Pieces pieces;
-  pieces.piece_of_triangle.assign(triangles, kNone);
-  for (std::uint32_t t = 0; t < triangles; ++t) {
-    std::uint32_t& of_first = pieces.piece_of_triangle[joined.find(t)];
-    if (of_first == kNone) {
-      of_first = pieces.count();
-      pieces.orientable.push_back(1);
-    }
-    pieces.piece_of_triangle[t] = of_first;
-  }
+  std::vector<std::uint32_t>& piece = pieces.piece_of_triangle;
+  piece.resize(triangles);
+  const std::size_t count = parallel_number(
+      triangles, [&](std::size_t t) { return first_of(t) == t; },
+      [&](std::size_t t, std::size_t number) { piece[t] = static_cast<std::uint32_t>(number); });
+  parallel_for(triangles, [&](std::size_t t) {
+    if (const std::uint32_t first = first_of(t); first != t) piece[t] = piece[first];
+  });
+  pieces.orientable.assign(count, 1);
   return pieces;
 }
 

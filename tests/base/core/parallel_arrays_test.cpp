@@ -43,7 +43,7 @@ TEST(ParallelArrays, NumbersInOrder) {
       for (std::size_t i = begin; i < end; ++i) sum += is_one(i);
       return sum;
     };
-    const std::size_t all = parallel_number(kMany, count, [&](std::size_t begin, std::size_t end, std::size_t next) {
+    const std::size_t all = number_in_blocks(kMany, count, [&](std::size_t begin, std::size_t end, std::size_t next) {
       for (std::size_t i = begin; i < end; ++i)
         if (is_one(i)) number[i] = next++;
       return next;

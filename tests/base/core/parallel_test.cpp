@@ -25,6 +25,16 @@ TEST(Parallel, EveryIndexOnce) {
     }
 }
 
+TEST(Parallel, NumbersWhatPassesATestInOrder) {
+  for (const std::size_t n : {std::size_t{0}, std::size_t{5}, std::size_t{100'003}}) {
+    std::vector<std::size_t> numbered(n, n);
+    const auto passes = [](std::size_t i) { return i % 3 == 1; };
+    const std::size_t all = parallel_number(n, passes, [&](std::size_t i, std::size_t k) { numbered[i] = k; });
+    EXPECT_EQ(all, (n + 1) / 3);
+    for (std::size_t i = 0, k = 0; i < n; ++i) EXPECT_EQ(numbered[i], passes(i) ? k++ : n) << i;
+  }
+}
+
 TEST(Parallel, AHookDoesAllTasksItself) {
   static std::size_t regions, tasks;
   regions = tasks = 0;
