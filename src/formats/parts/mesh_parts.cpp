@@ -160,7 +160,7 @@ const std::vector<Side>& MeshParts::sides() const {
       const std::uint32_t number = 4 * static_cast<std::uint32_t>(t) + i;
       for (const FaceTable::Entry& listed : table.group_of(of_tet)) {
         if (is_even(of_tet) == is_even(all[listed.face]))
-          SharedValue(behind[listed.face]).lower_to(~number);
+          SharedValue(behind[listed.face]).lower_to(kNobody - 1 - number);
         else
           SharedValue(before[listed.face]).lower_to(number);
       }
@@ -168,7 +168,7 @@ const std::vector<Side>& MeshParts::sides() const {
   });
   sides_.assign(all.size(), {kNone, -1});
   parallel_for(all.size(), [&](std::size_t f) {
-    const std::uint32_t number = behind[f] != kNobody ? ~behind[f] : before[f];
+    const std::uint32_t number = behind[f] != kNobody ? kNobody - 1 - behind[f] : before[f];
     if (number != kNobody) sides_[f] = {number / 4, static_cast<int>(number % 4)};
   });
   return sides_;
