@@ -532,7 +532,7 @@ TetMesh MeshOfPieces::release(Features* features, std::vector<VertexIndex>* numb
   is_used = {};
   if (!comm_.alone()) sort_among_ranks(along.size());
   const Groups<> order = order_by_key(tets_, along.size());
-  const std::vector<TetIndex>& kept = order.items();
+  const std::span<const TetIndex> kept = order.items();
   // In their own place, corner by corner: all at once would be there twice.
   std::vector<std::uint32_t> column(kept.size());
   for (std::size_t i = 0; i < 4; ++i) {

@@ -89,7 +89,7 @@ void EditMesh::take(TetMesh& mesh) {
     complex_.tets[k] = mesh.tets[order.items()[k]];
     if (had_regions_) region_[k] = mesh.region[order.items()[k]];
   });
-  numbers_ = order.items();
+  numbers_.assign(order.items().begin(), order.items().end());
   mesh.tets = std::vector<Tet>();
 }
 
@@ -177,7 +177,7 @@ TetMesh EditMesh::release() {
   complex_.across = std::vector<HalfFace>();
   shapes_ = std::vector<Shape>();
   const Groups<> order = order_by_key(complex_.tets, points_.size());
-  const std::vector<TetIndex>& kept = order.items();
+  const std::span<const TetIndex> kept = order.items();
   mesh.tets.resize(kept.size());
   if (had_regions_) mesh.region.resize(kept.size());
   parallel_for(kept.size(), [&](std::size_t k) {

@@ -123,7 +123,8 @@ Draft tidy::make_draft(const SurfaceMesh& soup, const RunContext& context) {
 RepairedSurface tidy::tidied(Draft& draft) {
   RepairedSurface result;
   // One region may touch itself in edges and points: as a complex it can be meshed, as a plain surface it cannot.
-  if (!is_complex(draft.mesh) && is_closed_manifold(draft.mesh.triangles, draft.mesh.points.size()))
+  if (!draft.mesh.sides.empty() && !is_complex(draft.mesh) &&
+      is_closed_manifold(draft.mesh.triangles, draft.mesh.points.size()))
     draft.mesh.sides.clear();
   clean_faces(draft, result);
   if (!draft.mesh.sides.empty()) {
