@@ -45,6 +45,7 @@
 #   bench/run.sh inside      sheets, lines and points in a block, beside Gmsh and TetGen     -> docs/measured/inside.md
 #   bench/run.sh periodic    periodic cells with and without periods, beside Gmsh, solved    -> docs/measured/periodic.md
 #   bench/run.sh ranks       one mesh by 1, 2, 4 and 8 processes: memory, bytes, imbalance, what all do alike -> docs/measured/ranks.md
+#   bench/run.sh coarse_input   surfaces of a million triangles at coarse sizes: time by stage, by triangle; --beside PROGRAM -> docs/measured/coarse-input.md
 #   bench/run.sh threads     what is serial in each stage, and what that predicts for 2, 16 and 64 threads -> docs/measured/threads.md
 #   bench/run.sh dry_run     mesh --dry-run: elements, time and memory said and taken -> docs/use/command-line.md
 #   bench/run.sh answers     bodies with known answers, meshed by ours, Gmsh and Netgen, solved by CalculiX: errors against unknowns and time;
@@ -54,7 +55,7 @@ cd "$(dirname "$0")/.."
 source scripts/lib/apt.sh
 
 case ${1:-} in
-  status | derived | pipeline | surface | elements | gradation | volume | graded | peers | experiments | complexes | improve | adapt | adapt_loops | carry | move | motion | formats | parts | second_order | dry_run | repair | known_answers | damage | images | images_needed | four_shells | thin | budget | cad | layers | layers_shapes | layers_flows | layers_peers | layers_solved | inside | periodic | ranks | threads | answers | polyhedral | flows | cavity | high_order | freecad) ;;
+  status | derived | pipeline | surface | elements | gradation | volume | graded | peers | experiments | complexes | improve | adapt | adapt_loops | carry | move | motion | formats | parts | second_order | dry_run | repair | known_answers | damage | images | images_needed | four_shells | thin | budget | cad | layers | layers_shapes | layers_flows | layers_peers | layers_solved | inside | periodic | ranks | threads | coarse_input | answers | polyhedral | flows | cavity | high_order | freecad) ;;
   *) sed -n '2,/^set/s/^# \{0,1\}//p' "$0"; exit 2 ;;
 esac
 need_packages "${build_packages[@]}" python3

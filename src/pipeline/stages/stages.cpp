@@ -264,11 +264,13 @@ void require_bounds(const Domain& mended) {
 struct Known {
   bool is_clean = false;
   bool has_true_folds = false;  ///< they are the body's own, not noise
+  bool may_coarsen = false;     ///< it is no image's, which was coarsened before, nor CAD
 };
 
 Known known_of(const Domain& domain) {
   return {.is_clean = domain.found_clean != 0 && domain.found_clean == fingerprint(domain.surface),
-          .has_true_folds = domain.geometry != nullptr && !domain.true_volumes.empty()};
+          .has_true_folds = domain.geometry != nullptr && !domain.true_volumes.empty(),
+          .may_coarsen = domain.voxel_spacing == 0 && domain.geometry == nullptr};
 }
 
 /// Of arrays: readers have done so already.
@@ -289,6 +291,14 @@ std::vector<double> bounds_by_source(const Domain& mended, SurfaceMesh& surface)
   }
   surface.source = std::move(source);
   return bound;
+}
+
+/// Of a clean surface with far more triangles than sizes need.
+void coarsen(Examined& found, Run& run) {
+  std::optional<SurfaceMesh> coarse = coarse_surface(found.repaired.surface, run);
+  if (!coarse) return;
+  found.repaired.surface = std::move(*coarse);
+  found.edges = make_edge_table(found.repaired.surface.points.size(), found.repaired.surface.triangles);
 }
 
 /// `mended`: null, or what the soup is of, without sources.
@@ -314,6 +324,7 @@ Prepared prepare(const SurfaceMesh& soup, const Domain* mended, Known known, Run
   run.report.input_volume = enclosed_volume(found.repaired.surface);
   std::vector<double> volumes;
   if (defects == SurfaceDomain::Defects::kClean) volumes = volumes_of_regions(found.repaired.surface);
+  if (defects == SurfaceDomain::Defects::kClean && known.may_coarsen) coarsen(found, run);
   const bool is_plain = found.repaired.surface.sides.empty();
   std::vector<double> moved;
   // Folds at faces of a periodic cell would come off one of them alone.

@@ -1,12 +1,15 @@
 #include <octafront/complex.h>
 #include <octafront/repair.h>
 
+#include "base/core/disjoint_sets.h"
 #include "base/core/wording.h"
+#include "base/geometry/predicates.h"
 #include "base/mesh/complex.h"
 #include "base/mesh/surface_topology.h"
 #include "soup/cells/bodies.h"
 #include "soup/cells/filled_cells.h"
 #include "soup/cells/labelled.h"
+#include "soup/tidy/steps.h"
 
 #include <algorithm>
 #include <cmath>
@@ -57,6 +60,24 @@ bool is_plain(const SurfaceMesh& surface, const RunContext& context) {
   return defects.self_intersections.count > 0 ||
          (repaired.turned_cavities == 0 && defects.non_manifold_edges.count == 0 &&
           defects.non_manifold_vertices.count == 0 && defects.open_edges.count == 0);
+}
+
+/// Whether, but for vertices that are to be joined, this is one closed sheet without a flaw in any face or edge. Of it
+/// no part is closed by itself, so it has neither shells nor walls between cells, and nobody need look for them.
+bool is_one_closed_sheet(const SurfaceMesh& surface, const RunContext& context) {
+  constexpr std::size_t kBackToBack = 2;
+  tidy::Draft draft = tidy::make_draft(surface, context);
+  tidy::merge_vertices(draft);
+  const std::vector<Vec3>& points = draft.mesh.points;
+  const std::vector<Triangle>& triangles = draft.mesh.triangles;
+  if (triangles.size() <= kBackToBack) return false;
+  DisjointSets sets(points.size());
+  for (const auto& [a, b, c] : triangles) sets.join(a, b), sets.join(a, c);
+  for (VertexIndex v = 0; v < points.size(); ++v)
+    if (sets.find(v) != 0) return false;
+  return std::ranges::none_of(triangles,
+                              [&](const Triangle& t) { return collinear(points[t[0]], points[t[1]], points[t[2]]); }) &&
+         is_closed_manifold(triangles, points.size());
 }
 
 /// Empties the cells that the walls do not mean to be filled; says which shells inside others were taken for what.
@@ -186,6 +207,7 @@ std::optional<Complex> complex_of_walls(const SurfaceMesh& surface, const Comple
   const bool asked = is_asked_for(options);
   if (is_for_solids(options)) {
     if (std::optional<Complex> solids = complex_of_solids(surface, options, elements, context)) return solids;
+    if (!asked && is_one_closed_sheet(surface, context)) return std::nullopt;
     if (std::optional<Complex> shells = complex_of_shells(surface, options, elements, context)) {
       forget_zeros(shells->surface.patch);
       return shells;

@@ -17,6 +17,7 @@
 #include "soup/mend/separate.h"
 #include "soup/mend/skin.h"
 #include "soup/mend/weld.h"
+#include "soup/tidy/examine.h"
 #include "soup/tidy/steps.h"
 
 #include <algorithm>
@@ -78,7 +79,7 @@ double tolerance_of(const MendOptions& options, double diagonal) {
 }
 
 bool is_clean(const SurfaceMesh& surface, const RunContext& context) {
-  return find_defects(repair_surface(surface, context), context).clean();
+  return examine_surface(surface, false, context).defects.clean();
 }
 
 /// Whether repair did more than to join corners at the same place, which many files have apart.
@@ -486,8 +487,8 @@ Mended mend_surface(const SurfaceMesh& soup, const MendOptions& options, const R
     mended.surface = wrapped(soup, options, context, report);
   } else {
     if (lies_in_a_plane(soup)) refuse_open();
-    RepairedSurface repaired = repair_surface(soup, context);
-    const bool is_enough = find_defects(repaired, context).clean();
+    auto [repaired, edges, defects] = examine_surface(soup, false, context);
+    const bool is_enough = defects.clean();
     report.clean = is_enough && !has_changed(repaired);
     if (!is_enough) {
       mended.surface = mended_soup(soup, context, report);
@@ -499,7 +500,7 @@ Mended mend_surface(const SurfaceMesh& soup, const MendOptions& options, const R
     }
     if (is_enough) report.notes = repaired.notes;
   }
-  finish_report(report, mended.surface);
+  finish_report(report, mended.surface, context);
   return mended;
 }
 

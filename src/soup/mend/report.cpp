@@ -6,8 +6,6 @@
 
 #include <algorithm>
 #include <map>
-#include <numeric>
-#include <tuple>
 
 #include <fmt/core.h>
 
@@ -196,28 +194,23 @@ void write_notes(MendReport& report) {
 }
 
 /// Vertices at one place are one: a clean surface comes back as it is.
-std::uint32_t parts_of(const SurfaceMesh& surface) {
-  DisjointSets sets(surface.points.size());
-  const auto& p = surface.points;
-  const auto key = [&](VertexIndex v) { return std::tuple(p[v].x, p[v].y, p[v].z); };
-  std::vector<VertexIndex> order(p.size());
-  std::iota(order.begin(), order.end(), 0);
-  std::sort(order.begin(), order.end(), [&](VertexIndex a, VertexIndex b) { return key(a) < key(b); });
-  for (std::size_t i = 1; i < order.size(); ++i)
-    if (key(order[i]) == key(order[i - 1])) sets.join(order[i - 1], order[i]);
-  for (const Triangle& t : surface.triangles)
-    for (const VertexIndex v : t) sets.join(t[0], v);
-  std::vector<char> used(surface.points.size(), 0);
-  for (const Triangle& t : surface.triangles) used[sets.find(t[0])] = 1;
-  return static_cast<std::uint32_t>(std::count(used.begin(), used.end(), 1));
+std::uint32_t parts_of(const SurfaceMesh& surface, const RunContext& context) {
+  tidy::Draft draft{{surface.points, surface.triangles, {}, {}, {}}, {}, context};
+  tidy::merge_vertices(draft);
+  const SurfaceMesh& joined = draft.mesh;
+  DisjointSets sets(joined.points.size());
+  for (const auto& [a, b, c] : joined.triangles) sets.join(a, b), sets.join(a, c);
+  std::uint32_t parts = 0;
+  for (std::uint32_t v = 0; v < joined.points.size(); ++v) parts += sets.find(v) == v;
+  return parts;
 }
 
 }  // namespace
 
-void finish_report(MendReport& report, const SurfaceMesh& result) {
+void finish_report(MendReport& report, const SurfaceMesh& result, const RunContext& context) {
   report.area_after = area(result);
   report.volume_after = std::abs(enclosed_volume(result));
-  report.bodies = parts_of(result);
+  report.bodies = parts_of(result, context);
   std::stable_sort(report.changes.begin(), report.changes.end(),
                    [](const MendChange& a, const MendChange& b) { return a.kind < b.kind; });
   if (!report.clean) write_notes(report);

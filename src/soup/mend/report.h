@@ -27,6 +27,6 @@ void note_filled(MendReport& report, const Arrangement& arranged, const Cells& c
                  const std::vector<std::uint32_t>& filled);
 
 /// Sums, and a sentence for each kind of change.
-void finish_report(MendReport& report, const SurfaceMesh& result);
+void finish_report(MendReport& report, const SurfaceMesh& result, const RunContext& context);
 
 }  // namespace octafront::mend

@@ -8,14 +8,25 @@
 namespace octafront::tidy {
 namespace {
 
+/// Per half-edge the other one of its edge, whichever way that runs; kNone where an edge has not two.
+std::vector<HalfEdge> half_edges_across(const EdgeTable& table) {
+  std::vector<HalfEdge> across(table.half_edges.size(), kNone);
+  parallel_for(table.size(), [&](std::size_t e) {
+    const auto uses = table.uses(e);
+    if (uses.size() != 2) return;
+    across[uses[0]] = uses[1];
+    across[uses[1]] = uses[0] / 3 == uses[1] / 3 ? uses[1] : uses[0];
+  });
+  return across;
+}
+
 /// Walks over one piece from its first triangle and decides for each triangle whether it must turn to agree with that.
 class PieceWalk {
  public:
   explicit PieceWalk(Draft& draft)
       : triangles_(draft.mesh.triangles),
-        table_(draft.edges()),
         context_(draft.context),
-        edge_of_(table_.edge_of_half_edge()),
+        across_(half_edges_across(draft.edges())),
         turn_(triangles_.size(), 0) {}
 
   const std::vector<std::uint32_t>& members() const { return members_; }
@@ -30,9 +41,9 @@ class PieceWalk {
       if (k % 4096 == 0) context_.check();
       const std::uint32_t t = members_[k];
       for (std::uint32_t i = 0; i < 3; ++i) {
-        const auto uses = table_.uses(edge_of_[3 * t + i]);
-        if (uses.size() != 2) continue;
-        const std::uint32_t other = uses[0] / 3 == t ? uses[1] : uses[0], neighbour = other / 3;
+        const HalfEdge other = across_[3 * t + i];
+        if (other == kNone) continue;
+        const std::uint32_t neighbour = other / 3;
         const bool along = start_of(triangles_, 3 * t + i) == start_of(triangles_, other);
         const char turn = static_cast<char>(turn_[t] != along);
         if (piece_of[neighbour] == kNone) {
@@ -49,9 +60,8 @@ class PieceWalk {
 
  private:
   const std::vector<Triangle>& triangles_;
-  const EdgeTable& table_;
   const RunContext& context_;
-  const RawVector<std::uint32_t> edge_of_;
+  const std::vector<HalfEdge> across_;
   std::vector<char> turn_;
   std::vector<std::uint32_t> members_;
 };

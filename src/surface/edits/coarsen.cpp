@@ -1,5 +1,6 @@
 #include "surface/edits/coarsen.h"
 
+#include "base/core/parallel.h"
 #include "surface/edits/star_collapse.h"
 #include "surface/edits/surface_blocks.h"
 
@@ -32,10 +33,10 @@ class Coarsener {
         counts_(counts),
         merged_into_(mesh.points.size()),
         blocks_(mesh) {
-    for (VertexIndex v = 0; v < mesh.points.size(); ++v) {
+    left_ = collect(mesh.points.size(), [&](VertexIndex v) {
       const bool is_input = mesh.kind[v] == VertexKind::kRemovable || mesh.kind[v] == VertexKind::kRemovableCurve;
-      if (is_input && mesh.outgoing[v] != kNone && !mesh.is_sewn(v)) left_.push_back(v);
-    }
+      return is_input && mesh.outgoing[v] != kNone && !mesh.is_sewn(v);
+    });
   }
 
   void run() {
@@ -52,23 +53,31 @@ class Coarsener {
   }
 
  private:
+  /// The numbers below n that the test is true for.
+  template <class Test>
+  static std::vector<std::uint32_t> collect(std::size_t n, const Test& test) {
+    constexpr std::size_t kRange = 16384;
+    return parallel_collect<std::uint32_t>(n, kRange,
+                                           [&](std::size_t begin, std::size_t end, std::vector<std::uint32_t>& found) {
+                                             for (auto i = static_cast<std::uint32_t>(begin); i < end; ++i)
+                                               if (test(i)) found.push_back(i);
+                                           });
+  }
+
   /// What could not be collapsed away is a vertex like others from here on.
   void adopt_left() {
     for (const VertexIndex v : left_) {
       const bool on_curve = mesh_.kind[v] == VertexKind::kRemovableCurve;
       mesh_.kind[v] = on_curve ? VertexKind::kCurve : VertexKind::kFree;
     }
-    for (VertexIndex v = 0; v < mesh_.points.size(); ++v) {
+    parallel_for(mesh_.points.size(), [&](std::size_t v) {
       if (mesh_.outgoing[v] != kNone && !(mesh_.size[v] > 0)) mesh_.size[v] = sizes_.at(mesh_.points[v]);
-    }
+    });
   }
 
   void flip_all(const TurnLimits& limits) {
-    std::vector<HalfEdge> edges;
-    for (HalfEdge h = 0; h < mesh_.start.size(); ++h) {
-      if (h < mesh_.twin[h]) edges.push_back(h);
-    }
-    counts_.flips += make_delaunay(mesh_, blocks_, std::move(edges), limits);
+    const auto is_first = [&](HalfEdge h) { return h < mesh_.twin[h]; };
+    counts_.flips += make_delaunay(mesh_, blocks_, collect(mesh_.start.size(), is_first), limits);
   }
 
   void pass(const PassLimits& limits) {

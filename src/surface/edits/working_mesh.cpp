@@ -18,7 +18,7 @@ WorkingMesh::WorkingMesh(const InputSurface& input)
       patch(input.patch),
       origin(triangle_count()),
       place(points.size()),
-      changed(points.size(), kForSmoothing | kForFlips),
+      changed(points.size(), kForAll),
       first_back(input.first_back) {
   std::iota(origin.begin(), origin.end(), 0u);
   for (VertexIndex v = 0; v < points.size(); ++v) {
@@ -34,6 +34,10 @@ std::vector<std::uint32_t> WorkingMesh::alive_triangles() const {
     if (!is_removed(t)) alive.push_back(t);
   }
   return alive;
+}
+
+void WorkingMesh::clear_marks(std::uint8_t mark) {
+  for (std::uint8_t& c : changed) c &= static_cast<std::uint8_t>(~mark);
 }
 
 namespace {
@@ -101,7 +105,7 @@ VertexIndex WorkingMesh::add_vertex(Vec3 p, VertexKind k, Vec3 n, double h, std:
   size.push_back(h);
   face.push_back(in_face);
   place.emplace_back();
-  changed.push_back(kForSmoothing | kForFlips);
+  changed.push_back(kForAll);
   outgoing.push_back(kNone);
   return static_cast<VertexIndex>(points.size() - 1);
 }

@@ -37,7 +37,7 @@ struct WorkingMesh : HalfEdgeMesh {
   std::vector<std::uint32_t> patch;   ///< per triangle
   std::vector<std::uint32_t> origin;  ///< per triangle: while inserting, the input face it is a part of
   std::vector<CurvePlace> place;      ///< per vertex: where on a curve it lies, if it may slide there
-  std::vector<std::uint8_t> changed;  ///< per vertex: kForSmoothing and kForFlips, set by whatever changes around it
+  std::vector<std::uint8_t> changed;  ///< per vertex: kForSmoothing ..., set by whatever changes around it
 
   /// Triangles of patches from here on are backs: see seams.h. What lies on seams stays as it is.
   std::uint32_t first_back = kNone;
@@ -56,13 +56,17 @@ struct WorkingMesh : HalfEdgeMesh {
   bool is_sewn(VertexIndex v) const { return (v < pinned.size() && pinned[v] != 0) || on_seam(v); }
 
   /// Marks for passes that skip what did not change since they last saw it.
-  static constexpr std::uint8_t kForSmoothing = 1, kForFlips = 2;
+  static constexpr std::uint8_t kForSmoothing = 1, kForFlips = 2, kForSweep = 4;
+  static constexpr std::uint8_t kForAll = kForSmoothing | kForFlips | kForSweep;
   /// Vertices beside what a block changes may be marked by several threads.
-  void mark_changed(VertexIndex v) { SharedValue(changed[v]).store(kForSmoothing | kForFlips); }
+  void mark_changed(VertexIndex v) { SharedValue(changed[v]).store(kForAll); }
   void mark_star_changed(VertexIndex v) {
     mark_changed(v);
     for_each_outgoing(v, [&](HalfEdge h) { mark_changed(end(h)); });
   }
+
+  bool is_marked(VertexIndex v, std::uint8_t mark) const { return (changed[v] & mark) != 0; }
+  void clear_marks(std::uint8_t mark);
 
   std::size_t gone = 0;  ///< triangles that compact() has left out
 

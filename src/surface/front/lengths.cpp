@@ -2,6 +2,7 @@
 
 #include "surface/edits/local_guards.h"
 #include "surface/edits/star_collapse.h"
+#include "surface/edits/sweep.h"
 
 #include <algorithm>
 #include <optional>
@@ -38,31 +39,52 @@ class LengthAdjuster {
       : mesh_(mesh), input_(input), curve_points_(curve_points), sizes_(sizes), counts_(counts), star_(mesh) {}
 
   void run() {
-    for (VertexIndex v = 0; v < mesh_.points.size(); ++v) {
-      if (mesh_.kind[v] == VertexKind::kFree && mesh_.outgoing[v] != kNone) collapse_if_short(v);
-    }
-    const std::size_t half_edges = mesh_.start.size();
-    for (HalfEdge h = 0; h < half_edges; ++h) {
-      if (mesh_.start[h] == kNone || h > mesh_.twin[h]) continue;
-      if (!mesh_.is_feature[h])
-        split_if_long(h);
-      else if (relative_length(h) > kLongEdge)
-        counts_.splits += curve_points_.halve(h);
-    }
+    collapse_short();
+    split_long();
     mend_all();
   }
 
   void mend_all() {
+    const auto is_bad = [&](std::uint32_t t) {
+      return !mesh_.is_removed(t) && !mesh_.is_back(t) && quality(3 * t) < kBadLength;
+    };
     for (int round = 0; round < kMendRounds; ++round) {
-      bool any = false;
-      for (std::uint32_t t = 0; t < mesh_.triangle_count(); ++t) {
-        if (!mesh_.is_removed(t) && !mesh_.is_back(t) && quality(3 * t) < kBadLength) any |= mend(t);
-      }
+      const bool any = sweep(
+          mesh_, [&] { return mesh_.triangle_count(); }, is_bad,
+          [&](std::uint32_t t) {
+            return !mesh_.is_removed(t) &&
+                   std::ranges::any_of(mesh_.triangle(t), [&](VertexIndex v) { return has_changed(v); });
+          },
+          [&](std::uint32_t t) { return is_bad(t) && mend(t); });
       if (!any) break;
     }
   }
 
  private:
+  bool has_changed(VertexIndex v) const { return mesh_.is_marked(v, WorkingMesh::kForSweep); }
+
+  void collapse_short() {
+    const auto is_wanted = [&](VertexIndex v) {
+      return mesh_.kind[v] == VertexKind::kFree && mesh_.outgoing[v] != kNone && has_short(v);
+    };
+    sweep(
+        mesh_, [&, vertices = mesh_.points.size()] { return vertices; }, is_wanted,
+        [&](VertexIndex v) { return has_changed(v); },
+        [&](VertexIndex v) { return is_wanted(v) && collapse_short_at(v); });
+  }
+
+  void split_long() {
+    const auto is_wanted = [&](HalfEdge h) {
+      return mesh_.start[h] != kNone && h < mesh_.twin[h] && relative_length(h) > kLongEdge;
+    };
+    sweep(
+        mesh_, [&, half_edges = mesh_.start.size()] { return half_edges; }, is_wanted,
+        [&](HalfEdge h) {
+          return mesh_.start[h] != kNone && (has_changed(mesh_.start[h]) || has_changed(mesh_.end(h)));
+        },
+        [&](HalfEdge h) { return is_wanted(h) && split(h); });
+  }
+
   /// Squared quality of the triangle of h.
   double quality(HalfEdge h) const {
     return squared_quality(mesh_.points[mesh_.start[h]], mesh_.points[mesh_.end(h)], mesh_.points[mesh_.apex(h)]);
@@ -72,10 +94,14 @@ class LengthAdjuster {
     return 2 * distance(mesh_.points[a], mesh_.points[b]) / (mesh_.size[a] + mesh_.size[b]);
   }
 
-  void collapse_if_short(VertexIndex v) {
+  bool has_short(VertexIndex v) const {
     bool is_short = false;
     mesh_.for_each_outgoing(v, [&](HalfEdge h) { is_short = is_short || relative_length(h) < kShortEdge; });
-    if (!is_short) return;
+    return is_short;
+  }
+
+  /// The first of its short edges that may collapse, does; false if none may.
+  bool collapse_short_at(VertexIndex v) {
     star_.gather(v);
     const double now = star_.quality_now();
     for (std::size_t i = 0; i < star_.ring().size(); ++i) {
@@ -85,13 +111,20 @@ class LengthAdjuster {
         continue;
       mesh_.collapse(h);
       ++counts_.collapses;
-      return;
+      return true;
     }
+    return false;
+  }
+
+  bool split(HalfEdge h) {
+    if (!mesh_.is_feature[h]) return split_inside(h);
+    const bool done = curve_points_.halve(h);
+    counts_.splits += done;
+    return done;
   }
 
   /// The middle is walked to from an end inside a patch; where both lie on curves, from a vertex opposite.
-  void split_if_long(HalfEdge h) {
-    if (relative_length(h) <= kLongEdge) return;
+  bool split_inside(HalfEdge h) {
     const HalfEdge g = mesh_.twin[h];
     const Vec3 a = mesh_.points[mesh_.start[h]], b = mesh_.points[mesh_.start[g]];
     for (const VertexIndex from : {mesh_.start[h], mesh_.start[g], mesh_.apex(h), mesh_.apex(g)}) {
@@ -101,8 +134,9 @@ class LengthAdjuster {
       const Vec3 normal = input_.normal_at(x->face, x->p);
       mesh_.split_edge(h, mesh_.add_vertex(x->p, VertexKind::kFree, normal, sizes_.at(x->p), x->face));
       ++counts_.splits;
-      return;
+      return true;
     }
+    return false;
   }
 
   std::optional<SurfacePoint> walk_from(VertexIndex v, Vec3 target) const {

@@ -161,10 +161,10 @@ class SurfaceImprover {
   }
 
   void delaunay() {
-    const auto may_have_turned = [&](VertexIndex v) { return (mesh_.changed[v] & WorkingMesh::kForFlips) != 0; };
+    const auto may_have_turned = [&](VertexIndex v) { return mesh_.is_marked(v, WorkingMesh::kForFlips); };
     std::vector<HalfEdge> edges =
         edges_that([&](HalfEdge h) { return may_have_turned(mesh_.start[h]) && may_have_turned(mesh_.end(h)); });
-    for (std::uint8_t& c : mesh_.changed) c &= static_cast<std::uint8_t>(~WorkingMesh::kForFlips);
+    mesh_.clear_marks(WorkingMesh::kForFlips);
     counts_.flips += make_delaunay(mesh_, blocks_, std::move(edges), kFlipLimits);
   }
 
@@ -240,7 +240,7 @@ class SurfaceImprover {
     std::vector<VertexIndex> vertices = parallel_collect<VertexIndex>(
         mesh_.points.size(), kRange, [&](std::size_t begin, std::size_t end, std::vector<VertexIndex>& found) {
           for (auto v = static_cast<VertexIndex>(begin); v < end; ++v)
-            if ((mesh_.changed[v] & WorkingMesh::kForSmoothing) != 0 && mesh_.outgoing[v] != kNone) found.push_back(v);
+            if (mesh_.is_marked(v, WorkingMesh::kForSmoothing) && mesh_.outgoing[v] != kNone) found.push_back(v);
         });
     std::atomic<std::uint64_t> moves = 0;
     blocks_.run(

@@ -3,9 +3,9 @@
 #include "base/geometry/measures.h"
 #include "surface/edits/line_edits.h"
 #include "surface/edits/star_collapse.h"
+#include "surface/edits/sweep.h"
 
 #include <algorithm>
-#include <numeric>
 #include <vector>
 
 namespace octafront::surface {
@@ -28,17 +28,27 @@ class LineMerger {
       : mesh_(mesh), edits_(mesh, is_fixed), tolerance_(tolerance), leeway_(leeway), star_(mesh) {}
 
   std::uint64_t run() {
-    std::vector<std::uint32_t> here(mesh_.triangle_count());
-    std::iota(here.begin(), here.end(), 0u);
+    const auto is_bad = [&](std::uint32_t t) { return !mesh_.is_removed(t) && quality(3 * t) < kBadBetweenLines; };
     std::uint64_t operations = 0;
-    for (int round = 0; round < kMergeRounds && !here.empty(); ++round) {
-      for (const std::uint32_t t : here) {
-        if (!mesh_.is_removed(t) && quality(3 * t) < kBadBetweenLines) operations += close(t) || pass_line_on(t);
-      }
+    const auto mend = [&](std::uint32_t t) {
+      const bool done = is_bad(t) && (close(t) || pass_line_on(t));
+      operations += done;
+      return done;
+    };
+    sweep(
+        mesh_, [&, triangles = mesh_.triangle_count()] { return triangles; }, is_bad,
+        [&](std::uint32_t t) {
+          return !mesh_.is_removed(t) && std::ranges::any_of(mesh_.triangle(t), [&](VertexIndex v) {
+            return mesh_.is_marked(v, WorkingMesh::kForSweep);
+          });
+        },
+        mend);
+    for (int round = 1; round < kMergeRounds && !changed_.empty(); ++round) {
       std::sort(changed_.begin(), changed_.end());
       changed_.erase(std::unique(changed_.begin(), changed_.end()), changed_.end());
-      here.swap(changed_);
+      const std::vector<std::uint32_t> here = std::move(changed_);
       changed_.clear();
+      for (const std::uint32_t t : here) mend(t);
     }
     return operations;
   }

@@ -73,10 +73,12 @@ class PointGrid {
     std::uint32_t page = kNoPage;  ///< of its points: the last one
     bool is_used = false, has_finer = false;
   };
-  /// Points of one cell, side by side in memory.
+  /// Points of one cell: where they are side by side in memory, for most are too far.
   struct Page {
-    std::array<Entry, 6> entries;
+    static constexpr std::uint32_t kRoom = 6;
+    std::array<Vec3, kRoom> places;
     std::uint32_t count = 0, next = kNoPage;
+    std::array<Entry, kRoom> entries;
   };
 
   static double power_of_two(int level) {
@@ -138,12 +140,13 @@ class PointGrid {
       if (cell.is_used) cells_[slot_of(cell.key)] = cell;
   }
   void append(Cell& cell, const Entry& entry) {
-    if (cell.page == kNoPage || pages_[cell.page].count == pages_[cell.page].entries.size()) {
+    if (cell.page == kNoPage || pages_[cell.page].count == Page::kRoom) {
       pages_.emplace_back();
       pages_.back().next = cell.page;
       cell.page = static_cast<std::uint32_t>(pages_.size() - 1);
     }
     Page& page = pages_[cell.page];
+    page.places[page.count] = entry.p;
     page.entries[page.count++] = entry;
   }
 
@@ -170,8 +173,7 @@ class PointGrid {
     for (std::uint32_t i = cell.page; i != kNoPage; i = pages_[i].next) {
       const Page& page = pages_[i];
       for (std::uint32_t k = 0; k < page.count; ++k) {
-        const Entry& e = page.entries[k];
-        if (squared_length(e.p - p) < square) visit(e);
+        if (squared_length(page.places[k] - p) < square) visit(page.entries[k]);
       }
     }
   }

@@ -2,6 +2,7 @@
 
 #include "base/core/disjoint_sets.h"
 #include "base/core/elementary.h"
+#include "base/core/parallel.h"
 #include "base/geometry/measures.h"
 #include "base/geometry/predicates.h"
 #include "surface/edits/line_edits.h"
@@ -43,6 +44,8 @@ constexpr double kLongestToCollapse = 20;
 /// Larger stars are left alone, for what judging a change of one takes grows with its square: tips of needles between
 /// kept triangles have hundreds of triangles, all of them bad, and no change helps there.
 constexpr std::size_t kLargestStar = 32;
+/// Triangles or half-edges that one thread looks through at a time.
+constexpr std::size_t kRangeOfFolds = 8192;
 
 /// What may be done.
 struct Change {
@@ -99,20 +102,22 @@ std::vector<std::uint8_t> with_small_rims(const WorkingMesh& mesh, const FoldLim
     const double most = std::min(limits.tolerance, limits.size_part * std::min(mesh.size[v], mesh.size[w]));
     return squared_length(mesh.points[v] - mesh.points[w]) < most * most;
   };
+  const std::vector<HalfEdge> short_ones = parallel_collect<HalfEdge>(
+      mesh.start.size(), kRangeOfFolds, [&](std::size_t begin, std::size_t end, std::vector<HalfEdge>& found) {
+        for (auto h = static_cast<HalfEdge>(begin); h < end; ++h)
+          if (!mesh.is_removed(h / 3) && is_short(h)) found.push_back(h);
+      });
+  if (short_ones.empty()) return fixed;
   DisjointSets joined(mesh.points.size());
-  const auto for_each_short = [&](const auto& visit) {
-    for (HalfEdge h = 0; h < mesh.start.size(); ++h)
-      if (!mesh.is_removed(h / 3) && is_short(h)) visit(h);
-  };
-  for_each_short([&](HalfEdge h) { joined.join(mesh.start[h], mesh.end(h)); });
+  for (const HalfEdge h : short_ones) joined.join(mesh.start[h], mesh.end(h));
   std::vector<int> euler(mesh.points.size(), 0);  // by the least vertex
   std::vector<std::uint8_t> is_counted(mesh.points.size(), 0);
-  for_each_short([&](HalfEdge h) {
+  for (const HalfEdge h : short_ones) {
     int& sum = euler[joined.find(mesh.start[h])];
     for (const VertexIndex v : {mesh.start[h], mesh.end(h)}) sum += is_counted[v] == 0, is_counted[v] = 1;
     sum -= h < mesh.twin[h];
     sum += h % 3 == 0 && is_short(h + 1) && is_short(h + 2);
-  });
+  }
   for (VertexIndex v = 0; v < mesh.points.size(); ++v)
     if (is_counted[v] != 0 && mesh.kind[v] == VertexKind::kCorner && euler[joined.find(v)] == 0) fixed[v] = 1;
   return fixed;
@@ -172,7 +177,7 @@ class FoldMender {
   }
 
   MendedFolds run(const RunContext& context) {
-    for (std::uint32_t t = 0; t < mesh_.triangle_count(); ++t) push(t);
+    queue_ = Queue({}, bad_triangles());
     const std::size_t most = kOperationsPerPlace * queue_.size() + 100;
     while (!queue_.empty() && result_.operations < most && result_.judged < limits_.most_judged) {
       context.check();
@@ -186,13 +191,29 @@ class FoldMender {
       }
       mend(t);
     }
-    for (HalfEdge h = 0; h < mesh_.start.size(); ++h) {
-      if (mesh_.start[h] != kNone && h < mesh_.twin[h]) result_.folds_left += folding_at(h) > 0;
-    }
+    result_.folds_left = parallel_sum(mesh_.start.size(), [&](std::size_t begin, std::size_t end) {
+      std::uint64_t folds = 0;
+      for (auto h = static_cast<HalfEdge>(begin); h < end; ++h)
+        folds += mesh_.start[h] != kNone && h < mesh_.twin[h] && folding_at(h) > 0;
+      return folds;
+    });
     return result_;
   }
 
  private:
+  using Queue = std::priority_queue<std::pair<double, std::uint32_t>>;
+
+  /// With how bad they are.
+  std::vector<std::pair<double, std::uint32_t>> bad_triangles() const {
+    return parallel_collect<std::pair<double, std::uint32_t>>(
+        mesh_.triangle_count(), kRangeOfFolds, [&](std::size_t begin, std::size_t end, auto& found) {
+          for (auto t = static_cast<std::uint32_t>(begin); t < end; ++t) {
+            if (mesh_.is_removed(t) || mesh_.is_back(t)) continue;
+            if (const double badness = badness_of(t); badness > 0) found.emplace_back(badness, t);
+          }
+        });
+  }
+
   bool is_kept_line(HalfEdge h) const { return limits_.keep_lines && mesh_.is_feature[h]; }
   double folding_at(HalfEdge h) const {
     return is_kept_line(h) ? 0 : folding(mesh_.area_vector(h / 3), mesh_.area_vector(mesh_.twin[h] / 3));
@@ -476,7 +497,7 @@ class FoldMender {
   const SewnMesh sewn_;
   LiveTriangles<SewnMesh> live_;
   std::vector<std::uint8_t> crosses_;  ///< per triangle
-  std::priority_queue<std::pair<double, std::uint32_t>> queue_;
+  Queue queue_;
   MendedFolds result_;
   double limit_ = 0;
   Change best_;
