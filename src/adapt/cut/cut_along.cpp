@@ -7,9 +7,9 @@
 #include "base/core/thread_limit.h"
 #include "base/core/wording.h"
 #include "base/geometry/measures.h"
-#include "base/labels/labels.h"
 #include "base/mesh/adjacency.h"
 #include "base/mesh/face_table.h"
+#include "base/mesh/labels.h"
 
 #include <algorithm>
 #include <cmath>

@@ -35,10 +35,11 @@ constexpr double kPlaces = kDivisionsOfBalance * kDivisionsOfBalance;
 
 class Balance {
  public:
-  Balance(const Walls& walls, std::span<const std::uint8_t> may_move, const Ground& ground,
-          std::span<const double> tolerance)
+  Balance(const Walls& walls, std::span<const std::uint8_t> may_move, std::span<const std::uint32_t> near,
+          const Ground& ground, std::span<const double> tolerance)
       : walls_(walls),
         may_move_(may_move),
+        near_(near),
         ground_(ground),
         tolerance_(tolerance),
         tree_(walls.surface),
@@ -58,10 +59,11 @@ class Balance {
   }
 
  private:
+  std::uint32_t near_of(std::uint32_t t) const { return near_[walls_.surface.triangles[t][0]]; }
   bool is_stray(std::uint32_t t) const {
     const TriangleCorners& c = tree_.corners(t);
     const double reach = kReachOfBalance * std::sqrt(longest_squared_edge(c[0], c[1], c[2]));
-    const double far = ground_.truth_of(c, walls_.surface.patch[t], walls_.outer[t] != 0, reach).distance;
+    const double far = ground_.truth_of(c, walls_.surface.patch[t], walls_.outer[t] != 0, reach, near_of(t)).distance;
     return std::isfinite(far) && far > kFlatEnough * tolerance_[walls_.surface.patch[t]];
   }
 
@@ -72,7 +74,7 @@ class Balance {
     const double twice = length(normal), reach = kReachOfBalance * std::sqrt(longest_squared_edge(c[0], c[1], c[2]));
     Vec3 volumes{};
     if (!(twice > 0)) return volumes;
-    std::uint32_t near = kNone;
+    std::uint32_t near = near_of(t);
     for_each_place([&](Vec3 w) {
       const Vec3 from = smooth_.surface_point({w.x * c[0] + w.y * c[1] + w.z * c[2], t});
       const auto to = ground_.on_surface(from, walls_.surface.patch[t], walls_.outer[t] != 0, normal, reach, near);
@@ -116,6 +118,7 @@ class Balance {
 
   const Walls& walls_;
   std::span<const std::uint8_t> may_move_;
+  std::span<const std::uint32_t> near_;
   const Ground& ground_;
   std::span<const double> tolerance_;
   TriangleTree tree_;
@@ -124,9 +127,10 @@ class Balance {
 
 }  // namespace
 
-std::vector<Vec3> steps_to_balance(const Walls& walls, std::span<const std::uint8_t> may_move, const Ground& ground,
+std::vector<Vec3> steps_to_balance(const Walls& walls, std::span<const std::uint8_t> may_move,
+                                   std::span<const std::uint32_t> near, const Ground& ground,
                                    std::span<const double> tolerance) {
-  return Balance(walls, may_move, ground, tolerance).steps();
+  return Balance(walls, may_move, near, ground, tolerance).steps();
 }
 
 }  // namespace octafront::adapt

@@ -341,9 +341,9 @@ Ground::Truth Ground::truth_at(Vec3 place, Vec3 normal, std::uint32_t part, bool
   return {distance(place, at->at), outer ? cosine : std::abs(cosine)};
 }
 
-Ground::Truth Ground::truth_of(const TriangleCorners& t, std::uint32_t part, bool outer, double reach) const {
+Ground::Truth Ground::truth_of(const TriangleCorners& t, std::uint32_t part, bool outer, double reach,
+                               std::uint32_t near) const {
   const Vec3 normal = double_area_normal(t[0], t[1], t[2]);
-  std::uint32_t near = kNone;
   Truth truth = truth_at(centroid(t[0], t[1], t[2]), normal, part, outer, reach, near);
   for (std::size_t k = 0; k < 3 && std::isfinite(truth.distance); ++k) {
     const Truth beside = truth_at(0.5 * (t[k] + t[(k + 1) % 3]), normal, part, outer, reach, near);

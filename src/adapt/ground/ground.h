@@ -75,7 +75,9 @@ class Ground {
     double distance = 0;  ///< input units; infinite where the part is not within reach
     double cosine = 1;    ///< of the angle between a triangle and the surface at its middle
   };
-  Truth truth_of(const TriangleCorners& t, std::uint32_t part, bool outer, double reach) const;
+  /// `near`: a triangle of the walls that may be near, or kNone.
+  Truth truth_of(const TriangleCorners& t, std::uint32_t part, bool outer, double reach,
+                 std::uint32_t near = kNone) const;
   /// The same at one place of a triangle with this normal. `near`: a triangle of the walls that may be near, or kNone;
   /// becomes the one found.
   Truth truth_at(Vec3 place, Vec3 normal, std::uint32_t part, bool outer, double reach, std::uint32_t& near) const;

@@ -18,7 +18,7 @@ bool run_alike(const Triangle& a, const Triangle& b) {
 void turn_alike(Walls& walls) {
   SurfaceMesh& surface = walls.surface;
   EdgeTable table = make_edge_table(surface.points.size(), surface.triangles);
-  const std::vector<std::uint32_t> edge_of = table.edge_of_half_edge();
+  const RawVector<std::uint32_t> edge_of = table.edge_of_half_edge();
   std::vector<std::uint8_t> seen(walls.outer);
   std::vector<std::uint32_t> queue;
   for (std::uint32_t first = 0; first < seen.size(); ++first) {

@@ -4,7 +4,7 @@
 #include <octafront/options.h>
 
 #include "adapt/metric/metric.h"
-#include "sizing/sources/mesh_sizes.h"
+#include "sizing/field/mesh_sizes.h"
 
 #include <memory>
 #include <vector>

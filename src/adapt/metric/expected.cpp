@@ -1,8 +1,8 @@
 #include "adapt/metric/expected.h"
 
+#include "base/core/index_range.h"
 #include "base/core/parallel.h"
 #include "base/geometry/measures.h"
-#include "base/mesh/index_range.h"
 
 #include <algorithm>
 #include <array>

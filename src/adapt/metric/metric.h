@@ -10,6 +10,8 @@
 #include <octafront/size_field.h>
 #include <octafront/vec.h>
 
+#include "base/core/vector_units.h"
+
 #include <algorithm>
 #include <array>
 #include <cmath>
@@ -18,6 +20,15 @@
 namespace octafront::adapt {
 
 using octafront::Metric;
+
+/// m.times(e) and m.squared(e), inlined everywhere: most of what lengths and scores cost.
+OCTAFRONT_KERNEL Vec3 times(const Metric& m, Vec3 e) {
+  return {m.xx * e.x + m.xy * e.y + m.xz * e.z, m.xy * e.x + m.yy * e.y + m.yz * e.z,
+          m.xz * e.x + m.yz * e.y + m.zz * e.z};
+}
+OCTAFRONT_KERNEL double squared(const Metric& m, Vec3 e) {
+  return dot(e, times(m, e));
+}
 
 /// Requires a determinant that is not 0.
 Metric inverse(const Metric& m);
@@ -53,7 +64,7 @@ double far_log_mean(double a, double b);
 }
 /// (a - b) / ln(a / b), what lies between a and b > 0 as the length of an edge does whose ends ask for a and b; a if
 /// they are equal. To 1e-12.
-inline double log_mean(double a, double b) {
+OCTAFRONT_KERNEL double log_mean(double a, double b) {
   const double sum = a + b, difference = a - b, s = difference * difference;
   // ln(a / b) = 2 artanh((a - b) / (a + b)).
   if (s > 1e-4 * sum * sum) return lengths::far_log_mean(a, b);
@@ -64,8 +75,8 @@ inline double log_mean(double a, double b) {
 
 /// The length of the edge e in the metrics of its two ends, after the measures of the Unstructured Grid Adaptation
 /// Working Group: 1 is what is wanted.
-inline double metric_length(Vec3 e, const Metric& a, const Metric& b) {
-  return log_mean(std::sqrt(a.squared(e)), std::sqrt(b.squared(e)));
+OCTAFRONT_KERNEL double metric_length(Vec3 e, const Metric& a, const Metric& b) {
+  return log_mean(std::sqrt(squared(a, e)), std::sqrt(squared(b, e)));
 }
 
 /// The area of the triangle between two edges in a metric.
@@ -82,7 +93,7 @@ inline constexpr double kLongest = 1.4142135623730951, kShortest = 0.70710678118
 double density_of(const Metric& m);
 
 /// metric_score() by six volumes and the sum of the squared edges.
-inline double score_of_sums(double six_volumes, double sum) {
+OCTAFRONT_KERNEL double score_of_sums(double six_volumes, double sum) {
   // 1 for six edges of length 1 and six volumes of 1 / sqrt 2: 6^(3/2) sqrt 2.
   constexpr double kRegular = 20.784609690826528;
   return kRegular * six_volumes / (sum * std::sqrt(sum) + 1e-300);
@@ -90,15 +101,15 @@ inline double score_of_sums(double six_volumes, double sum) {
 /// The quality of a tetrahedron to the power 3/2: volume over (mean squared edge)^(3/2), both in this metric, 1 for one
 /// that is regular there, not positive where it is flat or inverted. The Working Group takes the metric of the corner
 /// of greatest density. `six_volumes`: the determinant of its edges.
-inline double metric_score(double six_volumes, const Metric& m, double density, Vec3 a, Vec3 b, Vec3 c, Vec3 d) {
-  return score_of_sums(six_volumes * density, m.squared(b - a) + m.squared(c - a) + m.squared(d - a) +
-                                                  m.squared(c - b) + m.squared(d - b) + m.squared(d - c));
+OCTAFRONT_KERNEL double metric_score(double six_volumes, const Metric& m, double density, Vec3 a, Vec3 b, Vec3 c,
+                                     Vec3 d) {
+  return score_of_sums(six_volumes * density, squared(m, b - a) + squared(m, c - a) + squared(m, d - a) +
+                                                  squared(m, c - b) + squared(m, d - b) + squared(m, d - c));
 }
 /// The same in a metric of size, which has no say.
-inline double metric_score(double six_volumes, Vec3 a, Vec3 b, Vec3 c, Vec3 d) {
-  const auto squared = [](Vec3 e) { return dot(e, e); };
-  return score_of_sums(
-      six_volumes, squared(b - a) + squared(c - a) + squared(d - a) + squared(c - b) + squared(d - b) + squared(d - c));
+OCTAFRONT_KERNEL double metric_score(double six_volumes, Vec3 a, Vec3 b, Vec3 c, Vec3 d) {
+  const Vec3 e = b - a, f = c - a, g = d - a, h = c - b, i = d - b, j = d - c;
+  return score_of_sums(six_volumes, dot(e, e) + dot(f, f) + dot(g, g) + dot(h, h) + dot(i, i) + dot(j, j));
 }
 /// The quality itself, from that score.
 double quality_of_score(double score);

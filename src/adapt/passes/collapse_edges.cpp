@@ -38,17 +38,20 @@ class EdgeCollapser {
     double length;
     Edge edge;
     TetIndex tet;
+
+    std::uint64_t key() const { return std::uint64_t{edge[0]} << 32 | edge[1]; }
   };
   /// One end at the other: what comes of it.
   struct Plan {
     VertexIndex gone = kNone, onto = kNone;
     float worst = 0;
+    bool is_behind = false;  ///< it is not better than another one, and was not finished
     std::vector<TetIndex> old;
     std::vector<Piece::NewTet> fresh;
     std::vector<Piece::NewWall> walls;
 
     void clear() {
-      gone = onto = kNone, worst = 0;
+      gone = onto = kNone, worst = 0, is_behind = false;
       old.clear(), fresh.clear(), walls.clear();
     }
   };
@@ -77,15 +80,16 @@ class EdgeCollapser {
     const auto waits = [&](VertexIndex v) {
       return round == 0 ? mends_ || piece_.vertices[v].active : changed_[v] == round;
     };
-    worst_at_.assign(piece_.vertices.size(), 2);
+    const float poor = piece_.isotropic ? kPoorForCollapse : kPoorForCollapseInMetric;
+    worst_at_.assign(piece_.vertices.size(), poor);
     for (TetIndex t = 0; t < piece_.complex.slots(); ++t)
-      if (piece_.complex.alive(t))
+      if (piece_.score[t] < poor && piece_.complex.alive(t))
         for (const VertexIndex v : piece_.tet(t)) worst_at_[v] = std::min(worst_at_[v], piece_.score[t]);
     for (TetIndex t = 0; t < piece_.complex.slots(); ++t) {
       if (!piece_.complex.alive(t)) continue;
       const Tet& c = piece_.tet(t);
-      const bool goes = mends_ ? is_to_mend(piece_, t)
-                               : piece_.score[t] < (piece_.isotropic ? kPoorForCollapse : kPoorForCollapseInMetric);
+      if (std::none_of(c.begin(), c.end(), waits)) continue;
+      const bool goes = mends_ ? is_to_mend(piece_, t) : piece_.score[t] < poor;
       if (mends_ && !goes) continue;
       for (const auto& [i, j] : kTetEdges) {
         const Vertex &p = piece_.vertices[c[i]], &q = piece_.vertices[c[j]];
@@ -99,11 +103,12 @@ class EdgeCollapser {
       }
     }
     const auto before = [](const Short& a, const Short& b) {
-      return a.length != b.length ? a.length < b.length : a.edge != b.edge ? a.edge < b.edge : a.tet < b.tet;
+      if (a.length != b.length) return a.length < b.length;
+      return a.key() != b.key() ? a.key() < b.key() : a.tet < b.tet;
     };
     std::sort(found.begin(), found.end(), before);
     found.erase(
-        std::unique(found.begin(), found.end(), [](const Short& a, const Short& b) { return a.edge == b.edge; }),
+        std::unique(found.begin(), found.end(), [](const Short& a, const Short& b) { return a.key() == b.key(); }),
         found.end());
     return found;
   }
@@ -112,9 +117,10 @@ class EdgeCollapser {
     if (!piece_.ring(t, a, b, ring_)) return false;
     one_.clear(), other_.clear();
     if (!piece_.vertices[a].stays()) plan(a, b, one_);
-    if (!piece_.vertices[b].stays()) plan(b, a, other_);
+    if (!piece_.vertices[b].stays()) plan(b, a, other_, one_.worst);
     const bool first = !(other_.worst > one_.worst);
     for (Plan* plan : {first ? &one_ : &other_, first ? &other_ : &one_}) {
+      if (plan->is_behind) plan_again(*plan);
       if (!(plan->worst > 0) || !keeps_surface(*plan)) continue;
       apply(*plan);
       return true;
@@ -141,22 +147,28 @@ class EdgeCollapser {
     }
   }
 
-  void plan(VertexIndex u, VertexIndex w, Plan& out) {
+  /// `rival`: what is not worse than that alone is finished.
+  void plan(VertexIndex u, VertexIndex w, Plan& out, float rival = 0) {
     if (!kinds_allow(u, w)) return;
     out.gone = u, out.onto = w;
-    if (!plan_tets(out)) out.worst = 0;
+    if (!plan_tets(out, rival)) out.worst = 0;
+  }
+  void plan_again(Plan& out) {
+    const VertexIndex u = out.gone, w = out.onto;
+    out.clear();
+    plan(u, w, out);
   }
   bool keeps_surface(Plan& out) {
     return piece_.vertices[out.gone].kind == Kind::kInner || (keeps_manifold(out.gone, out.onto) && plan_walls(out));
   }
 
-  bool plan_tets(Plan& out) {
+  bool plan_tets(Plan& out, float rival) {
     const std::vector<TetIndex>& star = piece_.star(out.gone);
     out.old.assign(star.begin(), star.end());
     float had = 1;
     for (const TetIndex t : out.old) had = std::min(had, mends_ ? worth_of(piece_, piece_.tet(t)) : piece_.score[t]);
     if (!mends_ && !lengths_allow(out)) return false;
-    const bool is_short = !mends_ && piece_.edge_length(out.gone, out.onto) < kShortest;
+    const bool is_short = !mends_ && piece_.is_shorter(piece_.vertices[out.gone], piece_.vertices[out.onto], kShortest);
     const float least =
         is_short ? std::min(had, piece_.isotropic ? kLeastOfCollapse : kLeastOfCollapseInMetric) : kGainOfPoor * had;
     out.worst = 1;
@@ -167,6 +179,10 @@ class EdgeCollapser {
       const float s = piece_.score_of(c);
       const float value = mends_ && s > 0 ? worth_of(piece_, c) : s;
       if (!(value >= least) || !(s > 0)) return false;
+      if (value <= rival) {
+        out.is_behind = true;
+        return false;
+      }
       out.worst = std::min(out.worst, value);
       out.fresh.push_back({c, piece_.region[t], s});
     }
@@ -208,7 +224,7 @@ class EdgeCollapser {
       after.push_back({corners_of(f), piece_.wall[h]});
       out.walls.push_back({f, piece_.wall[h]});
     });
-    return !merges_lines && keep_walls_true(guide_, before, after);
+    return !merges_lines && keep_walls_true(guide_, before, after, piece_.vertices[w].near);
   }
 
   TriangleCorners corners_of(const Triangle& f) const {
@@ -248,7 +264,7 @@ class EdgeCollapser {
   std::vector<Piece::WallAt> walls_at_;
   Plan one_, other_;
   std::vector<HalfFace> star_;
-  std::vector<float> worst_at_;  ///< per vertex: the least score of its elements
+  std::vector<float> worst_at_;  ///< per vertex: the least score of its elements that are poor
   std::vector<VertexIndex> around_;
   std::vector<int> changed_;         ///< per vertex: one more than the last round that changed something around it
   std::vector<std::uint32_t> seen_;  ///< per vertex: the last stamp it got

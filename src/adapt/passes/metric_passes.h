@@ -95,14 +95,16 @@ PassCount insert_at_poor(Piece& piece, const Guide& guide);
 /// elements allow.
 PassCount settle_on_ground(Piece& piece, const Guide& guide);
 
-/// What a pass over walls has to ask: whether triangles may take the place of others of the same part.
+/// What a pass over walls has to ask: whether triangles may take the place of others of the same part. `near`: a
+/// triangle of the ground that may be near, or kNone.
 bool keeps_walls_true(const Guide& guide, std::span<const TriangleCorners> before,
-                      std::span<const TriangleCorners> after, Wall wall);
+                      std::span<const TriangleCorners> after, Wall wall, std::uint32_t near = kNone);
 struct WallTriangle {
   TriangleCorners corners;
   Wall wall;
 };
 /// The same of several walls, none of which may vanish.
-bool keep_walls_true(const Guide& guide, std::span<const WallTriangle> before, std::span<const WallTriangle> after);
+bool keep_walls_true(const Guide& guide, std::span<const WallTriangle> before, std::span<const WallTriangle> after,
+                     std::uint32_t near = kNone);
 
 }  // namespace octafront::adapt

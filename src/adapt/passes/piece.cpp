@@ -14,7 +14,7 @@ constexpr float kLittleChange = 0.04f;
 
 Vertex between(const Vertex& a, const Vertex& b, double part) {
   Vertex made;
-  made.hint = a.hint;
+  made.hint = a.hint, made.near = a.near;
   made.exact = a.exact && b.exact;
   if (made.exact) return made;
   made.metric = exp_of((1 - part) * log_of(a.metric) + part * log_of(b.metric));

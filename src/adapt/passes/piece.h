@@ -40,9 +40,10 @@ struct alignas(64) Vertex {
   /// For what mends: kStirred, something around it changed; kSettling, just before the cycle that is under way; kCalm,
   /// all that could be tried around it has been, in vain.
   enum Calmness : std::uint8_t { kCalm, kSettling, kStirred } calmness = kStirred;
-  std::uint32_t id = kNone;  ///< in the mesh that was given; kNone: new
-  std::uint32_t hint = 0;    ///< where the metric was looked up (MetricField::at)
-  double density = 1;        ///< density_of(metric)
+  std::uint32_t id = kNone;    ///< in the mesh that was given; kNone: new
+  std::uint32_t hint = 0;      ///< where the metric was looked up (MetricField::at)
+  std::uint32_t near = kNone;  ///< of a wall: a triangle of the ground that may be near; spares searches only
+  double density = 1;          ///< density_of(metric)
   Metric metric;
 
   bool stays() const { return rim || frozen || held || kind == Kind::kFixed; }
@@ -58,7 +59,7 @@ inline constexpr Wall kOuter = 0x80000000u;
 inline constexpr HalfFace kOutside = kFirstOutside, kBeyondRim = kFirstOutside + 1;
 
 /// The corner whose metric an element is measured in.
-inline const Vertex& densest_of(const std::array<const Vertex*, 4>& corners) {
+OCTAFRONT_KERNEL const Vertex& densest_of(const std::array<const Vertex*, 4>& corners) {
   const Vertex* densest = corners[0];
   for (int i = 1; i < 4; ++i)
     if (corners[i]->density > densest->density) densest = corners[i];
@@ -66,7 +67,7 @@ inline const Vertex& densest_of(const std::array<const Vertex*, 4>& corners) {
 }
 
 /// The length of an edge; in metrics of size without the tensors.
-inline double length_between(const Vertex& p, const Vertex& q, bool isotropic) {
+OCTAFRONT_KERNEL double length_between(const Vertex& p, const Vertex& q, bool isotropic) {
   const Vec3 e = q.at - p.at;
   if (!isotropic) return metric_length(e, p.metric, q.metric);
   const double squared = dot(e, e);
@@ -83,30 +84,29 @@ struct SquaredBounds {
   static constexpr double kSlack = 1e-9;  ///< more than lengths and their squares differ by rounding
 };
 /// A length lies between those in the metrics of the two ends.
-inline SquaredBounds squared_bounds(const Vertex& p, const Vertex& q, bool isotropic) {
+OCTAFRONT_KERNEL SquaredBounds squared_bounds(const Vertex& p, const Vertex& q, bool isotropic) {
   const Vec3 e = q.at - p.at;
-  const double squared = dot(e, e), a = isotropic ? p.metric.xx * squared : p.metric.squared(e),
-               b = isotropic ? q.metric.xx * squared : q.metric.squared(e);
+  const double squared = dot(e, e), a = isotropic ? p.metric.xx * squared : adapt::squared(p.metric, e),
+               b = isotropic ? q.metric.xx * squared : adapt::squared(q.metric, e);
   return {std::min(a, b), std::max(a, b)};
 }
 /// A vertex on the way between two, without a place or a kind: with its metric where it does not get its own.
 Vertex between(const Vertex& a, const Vertex& b, double part);
 /// The score of a tet with these corners, 0 if it is not positive by exact sign.
-inline float score_of_corners(const std::array<const Vertex*, 4>& c, bool isotropic) {
+OCTAFRONT_KERNEL float score_of_corners(const std::array<const Vertex*, 4>& c, bool isotropic) {
   // Of elements of a better score the sign of the volume is beyond doubt: rounding is 1e-14 of the edges at most.
   constexpr double kCertainScore = 1e-9;
   const Vec3 p = c[0]->at, q = c[1]->at, r = c[2]->at, s = c[3]->at;
-  const auto estimate = detail::orient3d_estimate(p, q, r, s);
+  const double det = detail::orient3d_det(p, q, r, s);
   double worth = 0;
   if (isotropic) {  // a size makes all lengths longer alike: the shape alone counts
-    worth = metric_score(estimate.det, p, q, r, s);
+    worth = metric_score(det, p, q, r, s);
     if (worth > kCertainScore) return static_cast<float>(worth);
   }
-  const int certain = estimate.certain_sign();
-  if (certain < 0 || (certain == 0 && orient3d(p, q, r, s) <= 0)) return 0;
+  if (orient3d(p, q, r, s) <= 0) return 0;
   if (!isotropic) {
     const Vertex& d = densest_of(c);
-    worth = metric_score(estimate.det, d.metric, d.density, p, q, r, s);
+    worth = metric_score(det, d.metric, d.density, p, q, r, s);
   }
   return std::max(static_cast<float>(worth), 1e-30f);
 }

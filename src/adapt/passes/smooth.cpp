@@ -35,10 +35,12 @@ constexpr double kLeastCosineOfWall = 0.8;
 /// Whether triangles of one wall are as true to the ground as is allowed; each place is looked at once.
 class WallCheck {
  public:
-  WallCheck(const Guide& guide, Wall wall)
+  /// `near`: a triangle of the ground that may be near, or kNone.
+  WallCheck(const Guide& guide, Wall wall, std::uint32_t near)
       : ground_(guide.ground),
         tolerance_(guide.tolerance_of(wall)),
         part_((wall & ~kOuter) - 1),
+        near_(near),
         outer_((wall & kOuter) != 0) {}
 
   /// Whether some may take the place of others. Edges that stay are as true as they were.
@@ -74,7 +76,7 @@ class WallCheck {
     if (is_fair() || knows_before_) return is_fair();
     knows_before_ = true;
     for (const TriangleCorners& t : before_) {
-      const Ground::Truth had = ground_.truth_of(t, part_, outer_, longest_edge(t));
+      const Ground::Truth had = ground_.truth_of(t, part_, outer_, longest_edge(t), near_);
       farthest_ = std::max(farthest_, had.distance), least_cosine_ = std::min(least_cosine_, had.cosine);
     }
     return is_fair();
@@ -82,7 +84,7 @@ class WallCheck {
 
   const Ground& ground_;
   double tolerance_, farthest_ = 0, least_cosine_ = 1;
-  std::uint32_t part_, near_ = kNone;
+  std::uint32_t part_, near_;
   bool outer_, knows_before_ = false;
   std::span<const TriangleCorners> before_;
   std::vector<Vec3> seen_;
@@ -90,10 +92,15 @@ class WallCheck {
 
 /// The unit tensor, which costs nothing.
 struct RoundMetric {
-  static Vec3 times(Vec3 e) { return e; }
-  static double squared(Vec3 e) { return dot(e, e); }
   explicit operator Metric() const { return {}; }
 };
+using adapt::squared, adapt::times;
+OCTAFRONT_KERNEL Vec3 times(const RoundMetric&, Vec3 e) {
+  return e;
+}
+OCTAFRONT_KERNEL double squared(const RoundMetric&, Vec3 e) {
+  return dot(e, e);
+}
 
 /// Slope and curvature of the lack as the vertex moves. With S the sum of squared edges and D the six volumes, both
 /// in the metric, 1 / score is S^(3/2) / D times a constant; D is linear.
@@ -106,9 +113,9 @@ struct Slope {
   template <class M>
   void add(const M& m, double density, double wanted, Vec3 x, const std::array<Vec3, 3>& face) {
     const auto& [a, b, c] = face;
-    const double sum =
-        m.squared(x - a) + m.squared(x - b) + m.squared(x - c) + m.squared(b - a) + m.squared(c - a) + m.squared(c - b);
-    const Vec3 n = -density * double_area_normal(a, b, c), g = 2.0 * m.times(3.0 * x - (a + b + c));
+    const double sum = squared(m, x - a) + squared(m, x - b) + squared(m, x - c) + squared(m, b - a) +
+                       squared(m, c - a) + squared(m, c - b);
+    const Vec3 n = -density * double_area_normal(a, b, c), g = 2.0 * times(m, 3.0 * x - (a + b + c));
     const double d = 1 / dot(n, x - a), root = std::sqrt(sum), f = sum * root * d;
     // f' = f (3/2 g / S - n / D), f'' = f (9 M / S + 3/4 g g' / S^2 - 3/2 (g n' + n g') / (S D) + 2 n n' / D^2).
     const Vec3 u = (1 / sum) * g, w = d * n;
@@ -440,7 +447,7 @@ class VertexMover {
     const double reach = kReachOfMove * distance(to.at, other);
     const auto home = path ? guide_.ground.on_line(to.at, *path, reach)
                            : guide_.ground.on_surface(to.at, (walls_[0].wall & ~kOuter) - 1,
-                                                      (walls_[0].wall & kOuter) != 0, wall_normal(), reach);
+                                                      (walls_[0].wall & kOuter) != 0, wall_normal(), reach, to.near);
     if (home) to.at = *home;
     return home.has_value();
   }
@@ -450,7 +457,7 @@ class VertexMover {
       const Wall wall = walls_[k].wall;
       const auto is_same = [&](const WallAt& w) { return w.wall == wall; };
       if (std::any_of(walls_.begin(), walls_.begin() + static_cast<std::ptrdiff_t>(k), is_same)) continue;
-      WallCheck check(guide_, wall);
+      WallCheck check(guide_, wall, to.near);
       for (const WallAt& w : walls_) {
         const Vec3 b = piece_.point(w.corners[1]), c = piece_.point(w.corners[2]);
         const std::array<TriangleCorners, 1> before{{{piece_.point(w.corners[0]), b, c}}}, after{{{to.at, b, c}}};
@@ -473,11 +480,12 @@ class VertexMover {
 }  // namespace
 
 bool keeps_walls_true(const Guide& guide, std::span<const TriangleCorners> before,
-                      std::span<const TriangleCorners> after, Wall wall) {
-  return WallCheck(guide, wall).allows(before, after);
+                      std::span<const TriangleCorners> after, Wall wall, std::uint32_t near) {
+  return WallCheck(guide, wall, near).allows(before, after);
 }
 
-bool keep_walls_true(const Guide& guide, std::span<const WallTriangle> before, std::span<const WallTriangle> after) {
+bool keep_walls_true(const Guide& guide, std::span<const WallTriangle> before, std::span<const WallTriangle> after,
+                     std::uint32_t near) {
   std::vector<Wall> walls;
   for (const WallTriangle& t : before)
     if (std::find(walls.begin(), walls.end(), t.wall) == walls.end()) walls.push_back(t.wall);
@@ -489,7 +497,7 @@ bool keep_walls_true(const Guide& guide, std::span<const WallTriangle> before, s
   };
   return std::all_of(walls.begin(), walls.end(), [&](Wall wall) {
     const std::vector<TriangleCorners> has = of_wall(wall, after);
-    return !has.empty() && keeps_walls_true(guide, of_wall(wall, before), has, wall);
+    return !has.empty() && keeps_walls_true(guide, of_wall(wall, before), has, wall, near);
   });
 }
 

@@ -169,7 +169,9 @@ class Splitter {
       if (!outer && dot(n, normal) < 0) n = -n;
       normal += normalized(n);
     }
-    return guide_.ground.on_surface(straight, (walls_[0].wall & ~kOuter) - 1, outer, normal, reach).value_or(straight);
+    std::uint32_t near = piece_.vertices[a].near;
+    return guide_.ground.on_surface(straight, (walls_[0].wall & ~kOuter) - 1, outer, normal, reach, near)
+        .value_or(straight);
   }
 
   bool split(TetIndex t, VertexIndex a, VertexIndex b, double part) {

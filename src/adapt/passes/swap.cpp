@@ -144,7 +144,7 @@ class Swapper {
     };
     // Outward: behind the first wall of the ring, (a, b, p).
     const std::array before{corners(b, a, p), corners(a, b, q)}, after{corners(a, p, q), corners(b, q, p)};
-    return keeps_walls_true(guide_, before, after, label);
+    return keeps_walls_true(guide_, before, after, label, piece_.vertices[p].near);
   }
 
   /// What an element lacks to be regular.

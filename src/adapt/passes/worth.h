@@ -21,7 +21,9 @@ float worth_of_corners(const std::array<const Vertex*, 4>& c, const Mesh& mesh) 
   const float score = score_of_corners(c, isotropic) / mesh.poor;
   if (!(score > 0)) return 0;
   double longest = 0;
-  for (const auto& [i, j] : kTetEdges) longest = std::max(longest, length_between(*c[i], *c[j], isotropic));
+  for (const auto& [i, j] : kTetEdges)
+    if (!squared_bounds(*c[i], *c[j], isotropic).surely_within(longest))
+      longest = std::max(longest, length_between(*c[i], *c[j], isotropic));
   const double excess = kLongOfPoor / longest;
   return std::min(score, static_cast<float>(excess * excess * excess));
 }

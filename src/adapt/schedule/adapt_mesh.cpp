@@ -9,10 +9,10 @@
 #include "base/core/disjoint_sets.h"
 #include "base/core/groups.h"
 #include "base/core/parallel.h"
+#include "base/core/renumber.h"
 #include "base/core/validate.h"
+#include "base/geometry/blocks.h"
 #include "base/geometry/measures.h"
-#include "base/mesh/renumber.h"
-#include "base/shared/blocks.h"
 
 #include <algorithm>
 #include <cmath>
@@ -149,7 +149,7 @@ class Adapter {
   /// What is still poor, each place by itself: what is so long that it was at the rim of all its pieces, too.
   void mend(Counts& sum) {
     choose_poor();
-    if (count_poor() * kMostPoor > mesh_.tets.size() && !mesh_.isotropic) return;
+    if (!mesh_.isotropic && count_poor() * kMostPoor > mesh_.tets.size()) return;
     mends_ = true;
     for (int k = 0; k < kMostRoundsOfMending; ++k) {
       const Cells places = poor_places(k > 0);
@@ -560,6 +560,9 @@ Adapted adapt_mesh(const TetMesh& mesh, const MetricField& metric, const AdaptRu
   const Guide guide{metric,          ground,     least == bounds.tolerance.end() ? rules.tolerance : *least,
                     stage.context(), taken.kept, bounds.tolerance};
   taken.parts.isotropic = metric.is_isotropic();
+  const std::vector<Triangle>& walls = ground.walls().surface.triangles;
+  for (std::uint32_t t = 0; t < walls.size(); ++t)
+    for (const VertexIndex v : walls[t]) taken.parts.vertices[v].near = t;
   parallel_for(taken.parts.vertices.size(), [&](std::size_t v) { guide.ask(taken.parts.vertices[v]); });
   if (rules.keep_walls)
     for (Vertex& v : taken.parts.vertices) v.frozen |= v.kind != Kind::kInner;

@@ -11,7 +11,7 @@
 #include "adapt/passes/piece.h"
 #include "adapt/schedule/nearness.h"
 #include "base/core/stage.h"
-#include "base/labels/labels.h"
+#include "base/mesh/labels.h"
 
 #include <cstdint>
 #include <span>

@@ -5,9 +5,9 @@
 #include "adapt/schedule/sheet_passes.h"
 #include "base/core/parallel.h"
 #include "base/core/validate.h"
+#include "base/geometry/blocks.h"
 #include "base/geometry/measures.h"
 #include "base/mesh/surface_topology.h"
-#include "base/shared/blocks.h"
 
 #include <algorithm>
 #include <map>

@@ -51,8 +51,10 @@ std::size_t balance_once(Parts& parts, const Guide& guide, double feature_angle)
   turn_alike(walls);
   walls.lines = detect_features(walls.surface, walls.edges, feature_angle);
   std::vector<std::uint8_t> may_move;
-  for (const VertexIndex v : now.vertex) may_move.push_back(may_balance(parts.vertices[v]));
-  const std::vector<Vec3> steps = steps_to_balance(walls, may_move, guide.ground, guide.tolerances);
+  std::vector<std::uint32_t> near;
+  for (const VertexIndex v : now.vertex)
+    may_move.push_back(may_balance(parts.vertices[v])), near.push_back(parts.vertices[v].near);
+  const std::vector<Vec3> steps = steps_to_balance(walls, may_move, near, guide.ground, guide.tolerances);
   std::vector<Vertex> moved = parts.vertices;
   std::vector<std::uint8_t> moves(moved.size(), 0);
   for (std::size_t p = 0; p < steps.size(); ++p) {

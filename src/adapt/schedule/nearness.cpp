@@ -1,9 +1,9 @@
 #include "adapt/schedule/nearness.h"
 
 #include "base/core/parallel.h"
+#include "base/core/renumber.h"
 #include "base/geometry/hausdorff.h"
 #include "base/geometry/measures.h"
-#include "base/mesh/renumber.h"
 
 #include <algorithm>
 #include <cmath>

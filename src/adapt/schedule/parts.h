@@ -7,7 +7,7 @@
 
 #include "adapt/ground/ground.h"
 #include "adapt/passes/piece.h"
-#include "base/labels/labels.h"
+#include "base/mesh/labels.h"
 
 #include <cstdint>
 #include <functional>

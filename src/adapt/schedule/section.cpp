@@ -2,8 +2,8 @@
 
 #include "base/core/flat_map.h"
 #include "base/core/parallel.h"
+#include "base/core/renumber.h"
 #include "base/mesh/adjacency.h"
-#include "base/mesh/renumber.h"
 
 #include <algorithm>
 #include <numeric>

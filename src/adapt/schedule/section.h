@@ -5,7 +5,7 @@
 
 #include <octafront/tet_mesh.h>
 
-#include "base/labels/labels.h"
+#include "base/mesh/labels.h"
 
 #include <cstdint>
 #include <span>

@@ -2,7 +2,7 @@
 
 #include "base/core/parallel.h"
 #include "base/core/validate.h"
-#include "base/shared/blocks.h"
+#include "base/geometry/blocks.h"
 
 #include <utility>
 

@@ -53,11 +53,11 @@ class Buckets {
   std::size_t first(std::size_t bucket) const { return first_[bucket]; }
   std::size_t items() const { return items_.size(); }
   /// All items, bucket by bucket; none are left.
-  std::vector<Item> release() { return std::move(items_); }
+  RawVector<Item> release() { return std::move(items_); }
 
  private:
   std::vector<std::size_t> first_;
-  std::vector<Item> items_;
+  RawVector<Item> items_;
 };
 
 /// The numbers 0 ... n - 1 in ranges of one length, a bucket each.

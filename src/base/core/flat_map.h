@@ -41,6 +41,18 @@ struct FlatKeys<std::array<std::uint32_t, 3>> {
   }
 };
 
+/// a == b; of vertices without a call.
+template <class Key>
+constexpr bool is_same_key(const Key& a, const Key& b) {
+  return a == b;
+}
+constexpr bool is_same_key(const std::array<std::uint32_t, 2>& a, const std::array<std::uint32_t, 2>& b) {
+  return a[0] == b[0] && a[1] == b[1];
+}
+constexpr bool is_same_key(const std::array<std::uint32_t, 3>& a, const std::array<std::uint32_t, 3>& b) {
+  return a[0] == b[0] && a[1] == b[1] && a[2] == b[2];
+}
+
 /// A hash map in one array: open addressing with linear steps, at most half full. Its order is seen by for_each()
 /// alone, so it cannot change a result. References stay valid until the next find_or_add(), erase(), reserve() or
 /// reset().
@@ -54,17 +66,17 @@ class FlatMap {
   /// The value of the key, or nullptr.
   const Value* find(const Key& key) const {
     const Slot& slot = slots_[place(key)];
-    return slot.key == key ? &slot.value : nullptr;
+    return is_same_key(slot.key, key) ? &slot.value : nullptr;
   }
   Value* find(const Key& key) {
     Slot& slot = slots_[place(key)];
-    return slot.key == key ? &slot.value : nullptr;
+    return is_same_key(slot.key, key) ? &slot.value : nullptr;
   }
   bool contains(const Key& key) const { return find(key) != nullptr; }
   /// The value of the key, `initial` if it is new.
   Value& find_or_add(const Key& key, const Value& initial = {}) {
     std::size_t at = place(key);
-    if (slots_[at].key != key) {
+    if (!is_same_key(slots_[at].key, key)) {
       if (2 * (size_ + 1) > slots_.size()) {
         rehash(2 * slots_.size());
         at = place(key);
@@ -80,7 +92,7 @@ class FlatMap {
     if (slots_[hole].key != key) return false;
     --size_;
     // Later entries of the run move up where the hole would cut them off from the place that they belong to.
-    for (std::size_t i = next(hole); slots_[i].key != Keys::kEmpty; i = next(i)) {
+    for (std::size_t i = next(hole); !is_same_key(slots_[i].key, Keys::kEmpty); i = next(i)) {
       const std::size_t home = home_of(slots_[i].key);
       if (((i - home) & (slots_.size() - 1)) < ((i - hole) & (slots_.size() - 1))) continue;
       slots_[hole] = slots_[i];
@@ -94,7 +106,7 @@ class FlatMap {
   template <class Visit>
   void for_each(const Visit& visit) const {
     for (const Slot& s : slots_)
-      if (s.key != Keys::kEmpty) visit(s.key, s.value);
+      if (!is_same_key(s.key, Keys::kEmpty)) visit(s.key, s.value);
   }
 
   /// Makes room for `expected` keys in all.
@@ -122,14 +134,14 @@ class FlatMap {
     old.swap(slots_);
     shift_ = 64 - std::countr_zero(slots);
     for (const Slot& s : old)
-      if (s.key != Keys::kEmpty) slots_[place(s.key)] = s;
+      if (!is_same_key(s.key, Keys::kEmpty)) slots_[place(s.key)] = s;
   }
   std::size_t next(std::size_t i) const { return (i + 1) & (slots_.size() - 1); }
   std::size_t home_of(const Key& key) const { return static_cast<std::size_t>(Keys::hash(key) >> shift_); }
   /// Where the key is, or where it would be put.
   std::size_t place(const Key& key) const {
     std::size_t i = home_of(key);
-    while (slots_[i].key != key && slots_[i].key != Keys::kEmpty) i = next(i);
+    while (!is_same_key(slots_[i].key, key) && !is_same_key(slots_[i].key, Keys::kEmpty)) i = next(i);
     return i;
   }
 

@@ -1,6 +1,7 @@
 #pragma once
 
 #include "base/core/buckets.h"
+#include "base/core/parallel_arrays.h"
 
 #include <algorithm>
 #include <cstddef>
@@ -21,7 +22,7 @@ class Groups {
   /// visit(add) calls add(owner, item) for every item, owner < owners. It is called twice and must visit the same both
   /// times; in each group the items stand in the order of the visits.
   template <class Visit>
-  Groups(std::size_t owners, const Visit& visit) : first_(owners + 2, 0) {
+  Groups(std::size_t owners, const Visit& visit) : first_(owners + 2, Offset{0}) {
     // Counts stand two places ahead: after the sums place owner + 1 is the cursor of the owner, at the end its end.
     visit([this](std::size_t owner, const Item&) { ++first_[owner + 2]; });
     for (std::size_t i = 2; i < first_.size(); ++i) first_[i] += first_[i - 1];
@@ -31,7 +32,7 @@ class Groups {
   }
 
   /// Those of an owner begin at first[owner]; first[owners] is the end.
-  Groups(std::vector<Offset> first, std::vector<Item> items) : first_(std::move(first)), items_(std::move(items)) {}
+  Groups(RawVector<Offset> first, RawVector<Item> items) : first_(std::move(first)), items_(std::move(items)) {}
 
   std::size_t size() const { return first_.size() - 1; }
   /// The items of one owner.
@@ -42,18 +43,18 @@ class Groups {
     return {items_.data() + first_[owner], items_.data() + first_[owner + 1]};
   }
   /// All items, owner by owner; those of an owner begin at first(owner), those of the last one end at first(size()).
-  const std::vector<Item>& items() const { return items_; }
+  std::span<const Item> items() const { return items_; }
   Offset first(std::size_t owner) const { return first_[owner]; }
 
  private:
-  std::vector<Offset> first_;
-  std::vector<Item> items_;
+  RawVector<Offset> first_;
+  RawVector<Item> items_;
 };
 
 /// An item that is in no group.
 inline constexpr std::uint32_t kNoOwner = 0xffffffffu;
 
-/// The same as group_by_owner: a counting sort of stretches of the numbers, a thread each, which counts apart. Those of
+/// The same as group_by_owner: a counting sort of stretches of the numbers, each of which counts apart. Those of
 /// no owner are counted as those of one more, and put one over the other.
 template <class OwnerOf>
 Groups<> group_in_stretches(std::size_t owners, std::uint32_t items, const OwnerOf& owner_of, std::size_t stretches) {
@@ -70,16 +71,26 @@ Groups<> group_in_stretches(std::size_t owners, std::uint32_t items, const Owner
     };
     parallel_for(stretches, visit_stretch, Split::kSingly);
   };
-  for (auto& of_stretch : next) of_stretch.resize(owners + 1);
+  parallel_for(
+      stretches, [&](std::size_t s) { next[s].resize(owners + 1); }, Split::kSingly);
   for_each([](std::uint32_t, std::uint32_t owner, std::uint32_t* count) { ++count[owner]; });
-  std::vector<std::uint32_t> first(owners + 1);
-  std::uint32_t sum = 0;
-  for (std::size_t o = 0; o < owners; ++o) {
-    first[o] = sum;
-    for (auto& of_stretch : next) sum += std::exchange(of_stretch[o], sum);
-  }
-  first[owners] = sum;
-  std::vector<std::uint32_t> grouped(sum + kApart * stretches);
+  RawVector<std::uint32_t> first(owners + 1);
+  const auto count = [&](std::size_t begin, std::size_t end) {
+    std::size_t sum = 0;
+    for (const auto& of_stretch : next)
+      for (std::size_t o = begin; o < end; ++o) sum += of_stretch[o];
+    return sum;
+  };
+  const std::size_t sum = number_in_blocks(owners, count, [&](std::size_t begin, std::size_t end, std::size_t from) {
+    auto number = static_cast<std::uint32_t>(from);
+    for (std::size_t o = begin; o < end; ++o) {
+      first[o] = number;
+      for (auto& of_stretch : next) number += std::exchange(of_stretch[o], number);
+    }
+    return number;
+  });
+  first[owners] = static_cast<std::uint32_t>(sum);
+  RawVector<std::uint32_t> grouped(sum + kApart * stretches);
   for (std::size_t s = 0; s < stretches; ++s) next[s][owners] = static_cast<std::uint32_t>(sum + kApart * s);
   for_each([nobody, to = grouped.data()](std::uint32_t i, std::uint32_t owner, std::uint32_t* at) {
     to[at[owner]] = i;
@@ -95,14 +106,15 @@ Groups<> group_in_stretches(std::size_t owners, std::uint32_t items, const Owner
 /// they are counted as those of one owner more, and put one over the other.
 template <class OwnerOf>
 Groups<> group_by_owner(std::size_t owners, std::uint32_t items, const OwnerOf& owner_of) {
-  if (thread_count() == 1) {
+  constexpr std::uint32_t kFewItems = 4096;
+  if (thread_count() == 1 || items < kFewItems) {
     const auto nobody = static_cast<std::uint32_t>(owners);
-    std::vector<std::uint32_t> first(owners + 1, 0);
+    RawVector<std::uint32_t> first(owners + 1, 0);
     for (std::uint32_t i = 0; i < items; ++i) ++first[std::min<std::uint32_t>(owner_of(i), nobody)];
     std::uint32_t sum = 0;
     for (std::size_t o = 0; o < owners; ++o) sum += std::exchange(first[o], sum);
     first[owners] = sum;
-    std::vector<std::uint32_t> next = first, grouped(sum + std::size_t{1});
+    RawVector<std::uint32_t> next = first, grouped(sum + std::size_t{1});
     for (std::uint32_t i = 0; i < items; ++i) {
       const std::uint32_t owner = std::min<std::uint32_t>(owner_of(i), nobody);
       grouped[next[owner]] = i;
@@ -112,13 +124,14 @@ Groups<> group_by_owner(std::size_t owners, std::uint32_t items, const OwnerOf& 
     return {std::move(first), std::move(grouped)};
   }
   if (const std::size_t threads = thread_count(); 2 * threads * owners <= items)
-    return group_in_stretches(owners, items, owner_of, threads);
+    return group_in_stretches(owners, items, owner_of,
+                              std::clamp<std::size_t>(items / (2 * owners + 1), threads, 4 * threads));
   const RangeBuckets ranges(owners);
   Buckets<> by_range(items, ranges.count(), [&](std::size_t i, const auto& add) {
     const std::uint32_t owner = owner_of(static_cast<std::uint32_t>(i));
     if (owner != kNoOwner) add(ranges.of(owner), static_cast<std::uint32_t>(i));
   });
-  std::vector<std::uint32_t> first(owners + 1);
+  RawVector<std::uint32_t> first(owners + 1);
   first[owners] = static_cast<std::uint32_t>(by_range.items());
   parallel_for(ranges.count(), [&](std::size_t r) {
     const std::size_t begin = ranges.begin(r);

@@ -5,11 +5,15 @@
 // Bodies run in any order: whoever adds up does so afterwards, in order of the indices.
 
 #include "base/core/function_ref.h"
+#include "base/core/raw_vector.h"
 
 #include <algorithm>
 #include <atomic>
 #include <cstddef>
+#include <cstdint>
 #include <functional>
+#include <type_traits>
+#include <utility>
 #include <vector>
 
 namespace octafront {
@@ -73,10 +77,38 @@ auto parallel_sum(std::size_t n, const Part& part) {
   return sum;
 }
 
-/// What collect(begin, end, out) appends to a vector for ranges that together are [0, n), in their order.
-template <class Item, class Collect>
-std::vector<Item> parallel_collect(std::size_t n, std::size_t range, const Collect& collect) {
+/// Parts one behind the other; none are left.
+template <class All>
+All joined(std::vector<std::vector<typename All::value_type>>& parts) {
+  using Item = typename All::value_type;
+  std::vector<std::size_t> first;
+  first.reserve(parts.size() + 1);
+  std::size_t size = 0;
+  for (const auto& part : parts) first.push_back(size), size += part.size();
+  All all;
+  if constexpr (std::is_same_v<All, RawVector<Item>>) {
+    if (size == 0) return all;
+    all.resize(size);
+    parallel_for(parts.size(), [&](std::size_t i) {
+      std::copy(parts[i].begin(), parts[i].end(), all.begin() + static_cast<std::ptrdiff_t>(first[i]));
+      std::vector<Item>().swap(parts[i]);
+    });
+  } else {
+    all.reserve(size);
+    for (auto& part : parts) {
+      all.insert(all.end(), part.begin(), part.end());
+      std::vector<Item>().swap(part);
+    }
+  }
+  return all;
+}
+
+/// What collect(begin, end, out) appends to a vector for ranges that together are [0, n), in their order. A RawVector
+/// is filled by several threads, too.
+template <class Item, class All = std::vector<Item>, class Collect>
+All parallel_collect(std::size_t n, std::size_t range, const Collect& collect) {
   std::vector<std::vector<Item>> parts((n + range - 1) / range);
+  if (parts.empty()) return {};
   parallel_for(
       parts.size(),
       [&](std::size_t i) {
@@ -85,15 +117,7 @@ std::vector<Item> parallel_collect(std::size_t n, std::size_t range, const Colle
         if (parts[i].capacity() > 2 * parts[i].size()) parts[i].shrink_to_fit();
       },
       Split::kSingly);
-  std::size_t size = 0;
-  for (const auto& part : parts) size += part.size();
-  std::vector<Item> all;
-  all.reserve(size);
-  for (auto& part : parts) {
-    all.insert(all.end(), part.begin(), part.end());
-    std::vector<Item>().swap(part);
-  }
-  return all;
+  return joined<All>(parts);
 }
 
 /// Calls number(i, k) for the k-th i < n for which test(i) is true, and returns how many there are. test(i) is called
@@ -115,21 +139,50 @@ std::size_t parallel_number(std::size_t n, const Test& test, const Number& numbe
   return all;
 }
 
-/// std::sort by several threads. REQUIRES a total order: nothing else makes the result the same on any number of them.
-template <class Item, class Less = std::less<Item>>
-void parallel_sort(std::vector<Item>& items, const Less& less = {}) {
-  constexpr std::size_t kRun = 16384;
-  const auto at = [&](std::size_t i) { return items.begin() + static_cast<std::ptrdiff_t>(std::min(i, items.size())); };
-  const std::size_t threads = thread_count();
-  std::size_t run = threads == 1 ? items.size() : std::max(kRun, items.size() / (2 * threads) + 1);
-  if (run == 0) return;
-  parallel_for((items.size() + run - 1) / run, [&](std::size_t r) { std::sort(at(r * run), at((r + 1) * run), less); },
-               Split::kSingly);
-  for (; run < items.size(); run *= 2)
+/// std::sort by several threads: items that lie between some of them are put side by side, and each such stretch is
+/// sorted apart. REQUIRES a total order: nothing else makes the result the same on any number of threads.
+template <class Items, class Less = std::less<typename Items::value_type>>
+void parallel_sort(Items& items, const Less& less = {}) {
+  using Item = typename Items::value_type;
+  constexpr std::size_t kAlone = 4096, kStretch = 2048, kMostStretches = 256, kSamples = 8;
+  const std::size_t n = items.size();
+  if (thread_count() == 1 || n <= kAlone) return std::sort(items.begin(), items.end(), less);
+  const std::size_t stretches = std::min(n / kStretch, kMostStretches), chunks = stretches;
+  std::vector<Item> samples, ends;
+  for (std::size_t i = 0; i < kSamples * stretches; ++i) samples.push_back(items[n * i / (kSamples * stretches)]);
+  std::sort(samples.begin(), samples.end(), less);
+  for (std::size_t s = 1; s < stretches; ++s) ends.push_back(samples[kSamples * s]);
+
+  RawVector<std::uint8_t> stretch_of(n);
+  std::vector<std::vector<std::size_t>> next(chunks, std::vector<std::size_t>(stretches, 0));
+  const auto for_each = [&](const auto& visit) {
     parallel_for(
-        (items.size() + 2 * run - 1) / (2 * run),
-        [&](std::size_t r) { std::inplace_merge(at(2 * r * run), at((2 * r + 1) * run), at((2 * r + 2) * run), less); },
+        chunks,
+        [&](std::size_t c) {
+          for (std::size_t i = n * c / chunks; i < n * (c + 1) / chunks; ++i) visit(i, next[c]);
+        },
         Split::kSingly);
+  };
+  for_each([&](std::size_t i, std::vector<std::size_t>& count) {
+    const auto end = std::upper_bound(ends.begin(), ends.end(), items[i], less);
+    ++count[stretch_of[i] = static_cast<std::uint8_t>(end - ends.begin())];
+  });
+  std::vector<std::size_t> first(stretches + 1, n);
+  std::size_t sum = 0;
+  for (std::size_t s = 0; s < stretches; ++s) {
+    first[s] = sum;
+    for (auto& of_chunk : next) sum += std::exchange(of_chunk[s], sum);
+  }
+  RawVector<Item> sorted(n);
+  for_each([&](std::size_t i, std::vector<std::size_t>& to) { sorted[to[stretch_of[i]]++] = std::move(items[i]); });
+  parallel_for(
+      stretches,
+      [&](std::size_t s) {
+        const auto at = [&](auto& all, std::size_t i) { return all.begin() + static_cast<std::ptrdiff_t>(i); };
+        std::sort(at(sorted, first[s]), at(sorted, first[s + 1]), less);
+        std::move(at(sorted, first[s]), at(sorted, first[s + 1]), at(items, first[s]));
+      },
+      Split::kSingly);
 }
 
 /// A pointer for each thread that asks.

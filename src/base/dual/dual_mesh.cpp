@@ -2,12 +2,12 @@
 #include <octafront/poly_mesh.h>
 #include <octafront/run_context.h>
 
+#include "base/core/index_range.h"
 #include "base/core/parallel.h"
 #include "base/core/thread_limit.h"
 #include "base/dual/dual_faces.h"
 #include "base/dual/poly_faults.h"
 #include "base/geometry/measures.h"
-#include "base/mesh/index_range.h"
 
 #include <algorithm>
 #include <span>

@@ -35,7 +35,9 @@ Sample vertex_sample(const TriangleTree& to, Vec3 p, std::uint32_t near) {
     const auto& [a, b, c] = to.corners(near);
     limit = std::nextafter(squared_distance(p, closest_point_on_triangle(p, a, b, c)), limit);
   }
-  const auto nearest = to.nearest(p, limit);
+  auto nearest = to.nearest(p, limit);
+  // Boxes may be farther by rounding than what is in them.
+  if (nearest.triangle == kNone) nearest = to.nearest(p);
   return {p, std::sqrt(nearest.squared_distance), nearest.triangle};
 }
 

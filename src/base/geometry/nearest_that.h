@@ -21,7 +21,9 @@ TriangleTree::Nearest nearest_that(const TriangleTree& tree, Vec3 p, double reac
     const auto& [a, b, c] = tree.corners(near);
     limit = std::min(limit, std::nextafter(squared_distance(p, closest_point_on_triangle(p, a, b, c)), HUGE_VAL));
   }
-  const TriangleTree::Nearest first = tree.nearest(p, limit);
+  TriangleTree::Nearest first = tree.nearest(p, limit);
+  // Boxes may be farther by rounding than what is in them.
+  if (first.triangle == kNone && near != kNone) first = tree.nearest(p, reach * reach);
   if (first.triangle == kNone || fits(first.triangle, tree.corners(first.triangle))) return first;
   TriangleTree::Nearest best;
   best.squared_distance = reach * reach;

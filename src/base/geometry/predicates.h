@@ -11,6 +11,8 @@
 
 #include <octafront/vec.h>
 
+#include "base/core/vector_units.h"
+
 namespace octafront {
 
 namespace detail {
@@ -31,6 +33,12 @@ struct Orient3dEstimate {
     return (det > bound) - (det < -bound);
   }
 };
+
+/// The determinant alone, with the bits that the estimate has.
+OCTAFRONT_KERNEL double orient3d_det(Vec3 a, Vec3 b, Vec3 c, Vec3 d) {
+  const Vec3 u = b - a, v = c - a, w = d - a;
+  return u.x * (v.y * w.z - v.z * w.y) + u.y * (v.z * w.x - v.x * w.z) + u.z * (v.x * w.y - v.y * w.x);
+}
 
 inline Orient3dEstimate orient3d_estimate(Vec3 a, Vec3 b, Vec3 c, Vec3 d) {
   const Vec3 u = b - a, v = c - a, w = d - a;

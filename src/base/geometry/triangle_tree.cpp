@@ -23,10 +23,10 @@ struct TriangleTree::Builder {
   TriangleTree& tree;
   std::span<const Vec3> points;
   std::span<const Triangle> triangles;
-  std::vector<Entry> entries;
+  RawVector<Entry> entries;
 
   // Subtrees with more triangles than this are worth a task of their own.
-  static constexpr std::uint32_t kTask = 20'000;
+  static constexpr std::uint32_t kTask = 4096;
 
   TriangleCorners corners(std::uint32_t t) const {
     return {points[triangles[t][0]], points[triangles[t][1]], points[triangles[t][2]]};
@@ -104,9 +104,11 @@ TriangleTree::TriangleTree(const SurfaceMesh& surface) : TriangleTree(surface.po
 TriangleTree::TriangleTree(std::span<const Vec3> points, std::span<const Triangle> triangles) {
   if (triangles.empty()) return;
   const auto count = static_cast<std::uint32_t>(triangles.size());
-  Builder builder{*this, points, triangles, {}};
-  builder.entries.reserve(count);
-  for (std::uint32_t t = 0; t < count; ++t) builder.entries.push_back({box_of(builder.corners(t)).center(), t});
+  Builder builder{*this, points, triangles, RawVector<Builder::Entry>(count)};
+  parallel_for(count, [&](std::size_t t) {
+    const auto triangle = static_cast<std::uint32_t>(t);
+    builder.entries[t] = {box_of(builder.corners(triangle)).center(), triangle};
+  });
   nodes_.resize(Builder::node_count(count));
   items_.resize(count);
   item_of_triangle_.resize(count);

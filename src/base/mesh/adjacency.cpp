@@ -1,6 +1,6 @@
 #include "base/mesh/adjacency.h"
 
-#include "base/mesh/index_range.h"
+#include "base/core/index_range.h"
 
 namespace octafront {
 

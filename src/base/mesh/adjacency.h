@@ -11,7 +11,7 @@
 namespace octafront {
 
 /// Face i of tet t, as h = 4 * t + i; see tet_mesh.h. Meshes of 2^30 tets and more have no
-/// half-faces in 32 bits: what makes them throws MeshingError (base/mesh/index_range.h).
+/// half-faces in 32 bits: what makes them throws MeshingError (base/core/index_range.h).
 using HalfFace = std::uint32_t;
 
 /// Corners of a half-face, counter-clockwise seen from outside its tet.

@@ -8,10 +8,11 @@
 
 namespace octafront {
 
-std::vector<std::uint32_t> EdgeTable::edge_of_half_edge() const {
-  std::vector<std::uint32_t> edge_of(half_edges.size());
-  for (std::size_t e = 0; e < size(); ++e)
+RawVector<std::uint32_t> EdgeTable::edge_of_half_edge() const {
+  RawVector<std::uint32_t> edge_of(half_edges.size());
+  parallel_for(size(), [&](std::size_t e) {
     for (const std::uint32_t h : uses(e)) edge_of[h] = static_cast<std::uint32_t>(e);
+  });
   return edge_of;
 }
 
@@ -36,32 +37,55 @@ std::optional<std::string> EdgeTable::first_inconsistency(std::span<const Triang
 }
 
 EdgeTable make_edge_table(std::size_t vertices, std::span<const Triangle> triangles, const RunContext& context) {
+  context.check();
   // Half-edges are dealt to groups by their smaller vertex; what is left to sort is a handful per group.
-  using Use = std::pair<VertexIndex, HalfEdge>;  // larger vertex, half-edge
-  Groups<Use> uses(vertices, [&](const auto& add) {
-    for (std::uint32_t t = 0; t < triangles.size(); ++t)
-      for (std::uint32_t i = 0; i < 3; ++i) {
-        const VertexIndex a = triangles[t][i], b = triangles[t][(i + 1) % 3];
-        add(std::min(a, b), Use{std::max(a, b), 3 * t + i});
-      }
-  });
-  EdgeTable table;
-  table.edges.reserve(uses.items().size() / 2);
-  table.first.reserve(uses.items().size() / 2 + 1);
-  table.half_edges.reserve(uses.items().size());
-  for (VertexIndex v = 0; v < vertices; ++v) {
-    if (v % 4096 == 0) context.check();
-    const std::span<Use> at_vertex = uses[v];
-    std::sort(at_vertex.begin(), at_vertex.end());
+  struct Use {
+    VertexIndex larger;
+    HalfEdge half_edge;
+    auto operator<=>(const Use&) const = default;
+  };
+  const auto half_edges = static_cast<std::uint32_t>(3 * triangles.size());
+  const Groups<> of_vertex = group_by_owner(
+      vertices, half_edges, [&](HalfEdge h) { return std::min(start_of(triangles, h), end_of(triangles, h)); });
+  RawVector<Use> uses(half_edges);
+  const auto uses_of = [&](std::size_t v) { return std::span(uses).subspan(of_vertex.first(v), of_vertex[v].size()); };
+  parallel_for(vertices, [&](std::size_t v) {
+    const std::span<Use> at_vertex = uses_of(v);
     for (std::size_t k = 0; k < at_vertex.size(); ++k) {
-      if (k == 0 || at_vertex[k].first != at_vertex[k - 1].first) {
-        table.edges.push_back({v, at_vertex[k].first});
-        table.first.push_back(static_cast<std::uint32_t>(table.half_edges.size()));
-      }
-      table.half_edges.push_back(at_vertex[k].second);
+      const HalfEdge h = of_vertex[v][k];
+      at_vertex[k] = {std::max(start_of(triangles, h), end_of(triangles, h)), h};
     }
-  }
-  table.first.push_back(static_cast<std::uint32_t>(table.half_edges.size()));
+    std::sort(at_vertex.begin(), at_vertex.end());
+  });
+  const auto begins_edge = [](std::span<const Use> at_vertex, std::size_t k) {
+    return k == 0 || at_vertex[k].larger != at_vertex[k - 1].larger;
+  };
+  const auto for_each_edge = [&](std::size_t begin, std::size_t end, const auto& visit) {
+    for (std::size_t v = begin; v < end; ++v)
+      for (std::size_t k = 0; k < of_vertex[v].size(); ++k)
+        if (begins_edge(uses_of(v), k)) visit(v, k);
+  };
+  const auto count = [&](std::size_t begin, std::size_t end) {
+    std::size_t edges = 0;
+    for_each_edge(begin, end, [&](std::size_t, std::size_t) { ++edges; });
+    return edges;
+  };
+  EdgeTable table;
+  table.edges.resize(half_edges);
+  table.first.resize(half_edges + std::size_t{1});
+  const std::size_t edges =
+      number_in_blocks(vertices, count, [&](std::size_t begin, std::size_t end, std::size_t next) {
+        for_each_edge(begin, end, [&](std::size_t v, std::size_t k) {
+          table.edges[next] = {static_cast<VertexIndex>(v), uses_of(v)[k].larger};
+          table.first[next++] = static_cast<std::uint32_t>(of_vertex.first(v) + k);
+        });
+        return next;
+      });
+  table.edges.resize(edges), table.edges.shrink_to_fit();
+  table.first[edges] = half_edges;
+  table.first.resize(edges + 1), table.first.shrink_to_fit();
+  table.half_edges.resize(half_edges);
+  parallel_for(half_edges, [&](std::size_t i) { table.half_edges[i] = uses[i].half_edge; });
   validate(table, triangles);
   return table;
 }

@@ -3,6 +3,8 @@
 #include <octafront/ids.h>
 #include <octafront/run_context.h>
 
+#include "base/core/raw_vector.h"
+
 #include <cstddef>
 #include <cstdint>
 #include <optional>
@@ -30,16 +32,16 @@ inline VertexIndex end_of(std::span<const Triangle> triangles, HalfEdge h) {
 
 /// The undirected edges of a list of triangles, each with the half-edges that run along it.
 struct EdgeTable {
-  std::vector<Edge> edges;                ///< smaller vertex first, sorted, each once
-  std::vector<std::uint32_t> first;       ///< one per edge and one more: where its half-edges begin in `half_edges`
-  std::vector<std::uint32_t> half_edges;  ///< grouped by edge, ascending in each group
+  RawVector<Edge> edges;                ///< smaller vertex first, sorted, each once
+  RawVector<std::uint32_t> first;       ///< one per edge and one more: where its half-edges begin in `half_edges`
+  RawVector<std::uint32_t> half_edges;  ///< grouped by edge, ascending in each group
 
   std::size_t size() const { return edges.size(); }
   std::span<const std::uint32_t> uses(std::size_t e) const {
     return {half_edges.data() + first[e], half_edges.data() + first[e + 1]};
   }
   /// The edge that each half-edge runs along.
-  std::vector<std::uint32_t> edge_of_half_edge() const;
+  RawVector<std::uint32_t> edge_of_half_edge() const;
   /// Where this is not the table of the edges of these triangles (base/core/validate.h).
   std::optional<std::string> first_inconsistency(std::span<const Triangle> triangles) const;
 };

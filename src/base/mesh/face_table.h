@@ -45,6 +45,8 @@ class FaceTable {
         }) {
     sort();
   }
+  /// Of a list of faces, numbered by their places in it, by several threads.
+  FaceTable(std::size_t vertices, std::span<const Triangle> faces);
   /// Calls visit(key, entries) for each set of faces on the same vertices, numbers ascending, in the order of the keys.
   template <class Visit>
   void for_each_group(Visit&& visit) const {

@@ -15,7 +15,7 @@ namespace {
 /// Per triangle the part it lies in.
 std::vector<std::uint32_t> parts_between_features(const SurfaceMesh& surface, const EdgeTable& table,
                                                   const Features& features, std::uint32_t& parts) {
-  const std::vector<std::uint32_t> edge_of = table.edge_of_half_edge();
+  const RawVector<std::uint32_t> edge_of = table.edge_of_half_edge();
   std::vector<std::uint32_t> part(surface.triangles.size(), kNone), stack;
   parts = 0;
   for (std::uint32_t seed = 0; seed < part.size(); ++seed) {

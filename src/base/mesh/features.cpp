@@ -29,8 +29,7 @@ double lowest_height(Vec3 a, Vec3 b, Vec3 c) {
 
 /// Calls visit(face, neighbour) for each edge of `face` that has just two faces.
 template <typename Visit>
-void for_neighbours(const EdgeTable& table, const std::vector<std::uint32_t>& edge_of, std::uint32_t face,
-                    Visit visit) {
+void for_neighbours(const EdgeTable& table, std::span<const std::uint32_t> edge_of, std::uint32_t face, Visit visit) {
   for (std::uint32_t i = 0; i < 3; ++i) {
     const auto uses = table.uses(edge_of[3 * face + i]);
     if (uses.size() == 2) visit(uses[0] / 3 == face ? uses[1] / 3 : uses[0] / 3);
@@ -41,7 +40,7 @@ void for_neighbours(const EdgeTable& table, const std::vector<std::uint32_t>& ed
 /// other.
 class RimFinder {
  public:
-  RimFinder(const SurfaceMesh& surface, const EdgeTable& table, const std::vector<std::uint32_t>& edge_of,
+  RimFinder(const SurfaceMesh& surface, const EdgeTable& table, std::span<const std::uint32_t> edge_of,
             const std::vector<Vec3>& normal, const std::vector<char>& is_face)
       : surface_(surface), table_(table), edge_of_(edge_of), normal_(normal), is_face_(is_face) {}
 
@@ -80,7 +79,7 @@ class RimFinder {
 
   const SurfaceMesh& surface_;
   const EdgeTable& table_;
-  const std::vector<std::uint32_t>& edge_of_;
+  std::span<const std::uint32_t> edge_of_;
   const std::vector<Vec3>& normal_;
   const std::vector<char>& is_face_;
 };
@@ -103,7 +102,7 @@ std::vector<Vec3> face_directions(const SurfaceMesh& surface, const EdgeTable& t
   }
   if (slivers.empty() || slivers.size() == faces) return normal;
 
-  const std::vector<std::uint32_t> edge_of = table.edge_of_half_edge();
+  const RawVector<std::uint32_t> edge_of = table.edge_of_half_edge();
   const std::vector<char> is_face = settled;
   const RimFinder rims(surface, table, edge_of, normal, is_face);
   for (const std::uint32_t f : slivers) settled[f] = rims.is_rim(f);

@@ -22,9 +22,9 @@ class RingFilling {
         const int j = i + span;
         float& best = best_[i][j];
         best = span == 1 ? nothing : never;
+        if (span > 1 && span < n - 1 && !may_have(i, j)) continue;
         for (int k = i + 1; k < j; ++k)
           if (const float w = worth(i, k, j, best_[i][k], best_[k][j], best); w > best) best = w, apex_[i][j] = k;
-        if (span > 1 && span < n - 1 && best > never && !may_have(i, j)) best = never;
       }
     return best_[0][n - 1];
   }

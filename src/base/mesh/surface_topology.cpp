@@ -1,6 +1,7 @@
 #include "base/mesh/surface_topology.h"
 
 #include "base/core/disjoint_sets.h"
+#include "base/core/parallel.h"
 
 #include <algorithm>
 
@@ -30,13 +31,13 @@ std::vector<HalfEdge> half_edge_twins(std::span<const Triangle> triangles, std::
 
 std::vector<HalfEdge> half_edge_twins(std::span<const Triangle> triangles, const EdgeTable& table) {
   std::vector<HalfEdge> twin(3 * triangles.size(), kNone);
-  for (std::size_t e = 0; e < table.size(); ++e) {
-    if (table.uses(e).size() != 2) continue;
+  parallel_for(table.size(), [&](std::size_t e) {
+    if (table.uses(e).size() != 2) return;
     const HalfEdge a = table.uses(e)[0], b = table.uses(e)[1];
-    if (start_of(triangles, a) == start_of(triangles, b) || start_of(triangles, a) == end_of(triangles, a)) continue;
+    if (start_of(triangles, a) == start_of(triangles, b) || start_of(triangles, a) == end_of(triangles, a)) return;
     twin[a] = b;
     twin[b] = a;
-  }
+  });
   return twin;
 }
 

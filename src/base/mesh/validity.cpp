@@ -49,9 +49,8 @@ std::optional<std::string> range_defect(const Rows& rows, std::size_t n, const c
 }
 
 std::optional<std::string> unused_defect(const TetMesh& mesh, const std::vector<std::uint8_t>& is_used) {
-  const auto unused = std::find(is_used.begin(), is_used.end(), 0);
-  if (unused == is_used.end()) return std::nullopt;
-  const auto v = static_cast<std::size_t>(unused - is_used.begin());
+  const std::size_t v = parallel_find(is_used.size(), [&](std::size_t i) { return is_used[i] == 0; });
+  if (v == is_used.size()) return std::nullopt;
   return fmt::format("vertex {} {} belongs to no tetrahedron", v, place(mesh.points[v]));
 }
 
@@ -426,17 +425,16 @@ std::optional<std::string> face_defect(const TetMesh& mesh, const Faces& which, 
 // A triangle by its coordinates, rotated so that the least corner comes first.
 using PlacedTriangle = std::array<std::array<double, 3>, 3>;
 
-std::vector<PlacedTriangle> placed_triangles(const std::vector<Vec3>& points, const std::vector<Triangle>& triangles) {
-  std::vector<PlacedTriangle> out;
-  out.reserve(triangles.size());
-  for (const Triangle& t : triangles) {
-    PlacedTriangle placed;
-    for (int i = 0; i < 3; ++i) placed[i] = {points[t[i]].x, points[t[i]].y, points[t[i]].z};
-    std::rotate(placed.begin(), std::min_element(placed.begin(), placed.end()), placed.end());
-    out.push_back(placed);
-  }
-  std::sort(out.begin(), out.end());
-  return out;
+RawVector<PlacedTriangle> placed_triangles(const std::vector<Vec3>& points, const std::vector<Triangle>& triangles) {
+  RawVector<PlacedTriangle> placed(triangles.size());
+  parallel_for(triangles.size(), [&](std::size_t t) {
+    for (std::size_t i = 0; i < 3; ++i) {
+      const Vec3 p = points[triangles[t][i]];
+      placed[t][i] = {p.x, p.y, p.z};
+    }
+    std::rotate(placed[t].begin(), std::min_element(placed[t].begin(), placed[t].end()), placed[t].end());
+  });
+  return placed;
 }
 
 std::string place(const PlacedTriangle& t) {
@@ -445,9 +443,13 @@ std::string place(const PlacedTriangle& t) {
 }
 
 std::optional<std::string> boundary_difference(const TetMesh& mesh, const SurfaceMesh& surface) {
-  std::vector<PlacedTriangle> made, wanted;
-  parallel_invoke([&] { made = placed_triangles(mesh.points, mesh.boundary); },
-                  [&] { wanted = placed_triangles(surface.points, surface.triangles); });
+  RawVector<PlacedTriangle> made = placed_triangles(mesh.points, mesh.boundary),
+                            wanted = placed_triangles(surface.points, surface.triangles);
+  // In the same order as a rule.
+  const std::size_t both = std::min(made.size(), wanted.size());
+  if (made.size() == wanted.size() && parallel_find(both, [&](std::size_t i) { return made[i] != wanted[i]; }) == both)
+    return std::nullopt;
+  parallel_sort(made), parallel_sort(wanted);
   const auto [m, w] = std::mismatch(made.begin(), made.end(), wanted.begin(), wanted.end());
   if (w != wanted.end() && (m == made.end() || *w < *m))
     return "the boundary lacks the surface's triangle " + place(*w);
@@ -507,8 +509,14 @@ RoundedSum volume_of_tets(const TetMesh& mesh) {
 std::optional<std::string> volume_defect(const TetMesh& mesh, const RoundedSum& tets) {
   const auto& p = mesh.points;
   const Vec3 o = bounding_box(p).center();
-  RoundedSum enclosed;
-  for (const auto& [a, b, c] : mesh.boundary) enclosed.add(p[a] - o, p[b] - o, p[c] - o);
+  const RoundedSum enclosed = parallel_sum(mesh.boundary.size(), [&](std::size_t begin, std::size_t end) {
+    RoundedSum part;
+    for (std::size_t f = begin; f < end; ++f) {
+      const auto& [a, b, c] = mesh.boundary[f];
+      part.add(p[a] - o, p[b] - o, p[c] - o);
+    }
+    return part;
+  });
   constexpr double kRoundingsPerTerm = 16, epsilon = std::numeric_limits<double>::epsilon();
   const double rounding = epsilon * ((tets.terms + enclosed.terms) * (tets.magnitude + enclosed.magnitude) +
                                      kRoundingsPerTerm * (tets.products + enclosed.products));

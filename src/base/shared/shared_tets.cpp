@@ -1,7 +1,7 @@
 #include "base/shared/shared_tets.h"
 
 #include "base/mesh/mesh_share.h"
-#include "base/mesh/renumber.h"
+#include "base/mesh/renumber_mesh.h"
 #include "base/shared/in_parts.h"
 #include "base/shared/marks.h"
 #include "base/shared/shares.h"

@@ -3,8 +3,8 @@
 #include <octafront/repair.h>
 #include <octafront/units.h>
 
+#include "base/core/renumber.h"
 #include "base/core/wording.h"
-#include "base/mesh/renumber.h"
 #include "cad/reader/cad_reader.h"
 #include "cad/shapes/collapse_tiny.h"
 #include "cad/shapes/face_groups.h"

@@ -1,8 +1,8 @@
 #include "fill/front/advance.h"
 
+#include "base/core/index_range.h"
 #include "base/core/parallel.h"
 #include "base/core/validate.h"
-#include "base/mesh/index_range.h"
 #include "base/shared/shares.h"
 #include "fill/front/block_run.h"
 #include "fill/front/front_limits.h"

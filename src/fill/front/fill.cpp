@@ -8,7 +8,7 @@
 #include "base/core/stage_timer.h"
 #include "base/geometry/sight_line.h"
 #include "base/mesh/complex.h"
-#include "base/mesh/renumber.h"
+#include "base/mesh/renumber_mesh.h"
 #include "base/shared/packing.h"
 #include "fill/front/advance.h"
 #include "fill/front/bind_to_surface.h"

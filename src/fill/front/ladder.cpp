@@ -4,7 +4,7 @@
 
 #include "base/core/stage_timer.h"
 #include "base/core/validate.h"
-#include "base/mesh/renumber.h"
+#include "base/mesh/renumber_mesh.h"
 #include "base/shared/packing.h"
 #include "fill/front/backtrack.h"
 #include "fill/front/recover_cavity.h"

@@ -1,7 +1,7 @@
 #include "fill/front/partition.h"
 
+#include "base/core/index_range.h"
 #include "base/core/parallel.h"
-#include "base/mesh/index_range.h"
 
 #include <algorithm>
 #include <array>

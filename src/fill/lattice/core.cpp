@@ -3,12 +3,12 @@
 #include <octafront/surface_mesh.h>
 
 #include "base/core/buckets.h"
+#include "base/core/index_range.h"
 #include "base/core/parallel.h"
 #include "base/core/shared_value.h"
 #include "base/geometry/triangle_tree.h"
 #include "base/mesh/complex.h"
 #include "base/mesh/face_table.h"
-#include "base/mesh/index_range.h"
 #include "base/shared/marks.h"
 #include "base/shared/packing.h"
 #include "base/shared/shares.h"

@@ -35,6 +35,7 @@ class LeafFace {
   LeafFace(const Octree& tree, OctreeKey leaf, const Across& neighbours, int axis, bool high)
       : tree_(tree),
         leaf_(leaf),
+        low_(leaf.corner()),
         neighbours_(neighbours),
         axis_(axis),
         u_((axis + 1) % 3),
@@ -80,7 +81,7 @@ class LeafFace {
 
   Cell corner(int i) const {
     constexpr std::array<std::array<int, 2>, 4> kTurn{{{0, 0}, {1, 0}, {1, 1}, {0, 1}}};
-    Cell c = leaf_.corner();
+    Cell c = low_;
     const std::uint32_t side = leaf_.side();
     if (high_) c[axis_] += side;
     if (kTurn[i][0]) c[u_] += side;
@@ -101,6 +102,7 @@ class LeafFace {
 
   const Octree& tree_;
   OctreeKey leaf_;
+  Cell low_;  ///< its corner
   const Across& neighbours_;
   int axis_, u_, v_;
   bool high_;

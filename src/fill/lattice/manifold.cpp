@@ -1,7 +1,7 @@
 #include "fill/lattice/manifold.h"
 
 #include "base/mesh/adjacency.h"
-#include "base/mesh/renumber.h"
+#include "base/mesh/renumber_mesh.h"
 #include "base/mesh/surface_topology.h"
 
 #include <algorithm>

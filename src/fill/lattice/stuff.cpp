@@ -3,8 +3,8 @@
 #include <octafront/error.h>
 
 #include "base/core/disjoint_sets.h"
+#include "base/core/renumber.h"
 #include "base/geometry/measures.h"
-#include "base/mesh/renumber.h"
 #include "fill/lattice/cut_lattice.h"
 #include "fill/lattice/manifold.h"
 #include "fill/lattice/snap_features.h"

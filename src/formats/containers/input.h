@@ -40,7 +40,9 @@ struct Input {
 /// Asks every few milliseconds of reading whether to go on, and tells how far it is.
 class ReadingProgress {
  public:
-  explicit ReadingProgress(const Input& input) : input_(&input) { set_next(input.bytes.data()); }
+  explicit ReadingProgress(const Input& input) : ReadingProgress(input, input.bytes.data()) {}
+  /// From a place on.
+  ReadingProgress(const Input& input, const char* at) : input_(&input) { set_next(at); }
   /// To be told of every place that is reached.
   void reach(const char* at) {
     if (at >= next_) [[unlikely]]

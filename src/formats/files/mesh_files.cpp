@@ -3,8 +3,8 @@
 #include <octafront/io.h>
 #include <octafront/poly_mesh.h>
 
+#include "base/core/renumber.h"
 #include "base/core/thread_limit.h"
-#include "base/mesh/renumber.h"
 #include "formats/files/formats.h"
 #include "formats/jobs/job_plan.h"
 #include "formats/parts/division.h"

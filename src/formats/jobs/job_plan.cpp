@@ -1,9 +1,10 @@
 #include "formats/jobs/job_plan.h"
 
 #include <octafront/error.h>
-#include <octafront/units.h>
 
 #include "base/places/places.h"
+#include "formats/jobs/job_materials.h"
+#include "formats/jobs/job_places.h"
 
 #include <algorithm>
 #include <cmath>
@@ -15,103 +16,7 @@
 namespace octafront::io {
 namespace {
 
-using Kind = NamedSet::Kind;
 using Origin = Part::Origin;
-
-/// Stands where nothing is said: steel in N, mm and t.
-constexpr double kSteelYoung = 210000, kSteelPoisson = 0.3, kSteelDensity = 7.85e-9;
-
-void put_in_order(std::vector<std::uint32_t>& list) {
-  std::ranges::sort(list);
-  list.erase(std::unique(list.begin(), list.end()), list.end());
-}
-
-/// What a place is as one set: faces where they are wanted; else of the one kind that there is, or nodes.
-struct Wanted {
-  Kind kind;
-  std::vector<std::uint32_t> members;
-};
-
-class JobPlaces {
- public:
-  JobPlaces(const TetMesh& mesh, const MeshParts& parts, const SolverJob& job)
-      : mesh_(mesh), parts_(parts), job_(job) {}
-
-  Wanted faces(std::string_view option, const std::string& place) const {
-    Wanted wanted{Kind::kFaces, items(option, place).faces};
-    if (wanted.members.empty())
-      throw OptionError(
-          fmt::format("`{}`: \"{}\" has no faces; name a patch, a set of faces, or a reference point", option, place));
-    for (const std::uint32_t f : wanted.members)
-      if (f >= mesh_.boundary.size())
-        throw OptionError(
-            fmt::format("`{}`: \"{}\" has faces inside, where parts share their nodes; only free faces can bear that",
-                        option, place));
-    return wanted;
-  }
-  Wanted anything(std::string_view option, const std::string& place) const {
-    MeshItems all = items(option, place);
-    if (all.empty()) throw OptionError(fmt::format("`{}`: nothing lies at \"{}\"", option, place));
-    const std::array lists{&all.nodes, &all.edges, &all.faces, &all.tets};
-    if (std::ranges::count_if(lists, [](const auto* list) { return !list->empty(); }) == 1)
-      for (std::size_t k = 0; k < lists.size(); ++k)
-        if (!lists[k]->empty()) return {static_cast<Kind>(k), *lists[k]};
-    return nodes_of(all);
-  }
-  std::vector<std::uint32_t> regions(std::string_view option, const std::string& place) const {
-    std::vector<std::uint32_t> found;
-    for (const std::uint32_t t : items(option, place).tets) found.push_back(parts_.region_of(t));
-    put_in_order(found);
-    if (found.empty()) throw OptionError(fmt::format("`{}`: \"{}\" has no elements; name a part", option, place));
-    return found;
-  }
-  /// What the mesh calls it; its number among the parts.
-  std::optional<std::size_t> part(const Wanted& wanted) const {
-    for (std::size_t p = 0; p < parts_.parts().size(); ++p) {
-      const Part& part = parts_.parts()[p];
-      if (part.kind == wanted.kind && std::ranges::equal(part.members, wanted.members)) return p;
-    }
-    return std::nullopt;
-  }
-  std::optional<std::size_t> point(const std::string& name) const {
-    const auto at = std::ranges::find(job_.couplings, name, &JobCoupling::name);
-    if (at == job_.couplings.end()) return std::nullopt;
-    return static_cast<std::size_t>(at - job_.couplings.begin());
-  }
-  /// visit(option, place, what it is) for each that is no reference point.
-  template <class Visit>
-  void for_each(const Visit& visit) const {
-    for (const JobFix& fix : job_.fixes)
-      if (!point(fix.place))
-        visit(fix.place, fix.of_cylinder.empty() ? anything("fix", fix.place) : faces("fix", fix.place));
-    for (const JobLoad& load : job_.loads)
-      if (!point(load.place)) visit(load.place, faces("load", load.place));
-    for (const JobPressure& p : job_.pressures) visit(p.place, faces("pressure", p.place));
-    for (const JobCoupling& c : job_.couplings) visit(c.place, faces("couple", c.place));
-  }
-
- private:
-  MeshItems items(std::string_view option, const std::string& place) const {
-    MeshItems all = items_at(mesh_, option, place_of(option, place));
-    for (auto* list : {&all.nodes, &all.edges, &all.faces, &all.tets}) put_in_order(*list);
-    std::erase_if(all.nodes, [&](VertexIndex v) { return v >= parts_.points(); });  // that the file has not
-    return all;
-  }
-  Wanted nodes_of(const MeshItems& all) const {
-    Wanted wanted{Kind::kNodes, all.nodes};
-    for (const auto& [kind, list] :
-         {std::pair{Kind::kEdges, &all.edges}, {Kind::kFaces, &all.faces}, {Kind::kElements, &all.tets}}) {
-      const std::vector<VertexIndex> nodes = parts_.nodes_of({Origin::kSet, kind, 0, 0, {}, false, *list});
-      wanted.members.insert(wanted.members.end(), nodes.begin(), nodes.end());
-    }
-    put_in_order(wanted.members);
-    return wanted;
-  }
-
-  const TetMesh& mesh_;
-  const MeshParts& parts_;
-  const SolverJob& job_;
-};
 
 /// Of each opened contact of a mesh what is asked for it; null: nothing.
 using ContactLaws = std::vector<const JobContact*>;
@@ -155,7 +60,7 @@ class Planner {
       : out_(out), mesh_(mesh), job_(job), sections_(sections), places_(mesh.mesh(), mesh, job) {}
 
   JobPlan plan() {
-    plan_materials();
+    plan_materials(out_, mesh_, job_, places_, plan_);
     plan_couplings();
     plan_fixes();
     plan_systems();
@@ -176,81 +81,8 @@ class Planner {
   }
 
  private:
-  std::size_t part_of(const Wanted& wanted) const { return places_.part(wanted).value(); }
+  std::size_t part_of(const PlaceSet& wanted) const { return places_.part(wanted).value(); }
   std::span<const Part> regions() const { return mesh_.parts(Origin::kRegion); }
-
-  void plan_materials() {
-    plan_.materials = job_.materials;
-    std::vector<std::size_t>& of = plan_.material_of;
-    of.assign(regions().size(), plan_.materials.size());
-    const auto number = [&](const std::string& name) {
-      return static_cast<std::size_t>(std::ranges::find(job_.materials, name, &JobMaterial::name) -
-                                      job_.materials.begin());
-    };
-    for (const JobPart& part : job_.parts)
-      if (part.place.empty()) std::ranges::fill(of, number(part.material));
-    for (const JobPart& part : job_.parts) {
-      if (part.place.empty()) continue;
-      const std::vector<std::uint32_t> meant = places_.regions("materials", part.place);
-      for (std::size_t r = 0; r < of.size(); ++r)
-        if (std::ranges::binary_search(meant, regions()[r].number)) of[r] = number(part.material);
-    }
-    put_placeholder();
-    if (!job_.densities.empty()) put_densities();
-  }
-
-  /// Of the input; 0: it says none. The region of a single body may have another name.
-  double density_of_input(std::size_t region) const {
-    if (regions().size() == 1 && job_.densities.size() == 1) return job_.densities[0].value;
-    const auto found = std::ranges::find(job_.densities, regions()[region].name, &JobDensity::part);
-    return found == job_.densities.end() ? 0 : found->value;
-  }
-
-  bool has_own_density(std::size_t material) const {
-    return material == plan_.materials.size() || (material < job_.materials.size() && job_.materials[material].density);
-  }
-
-  /// A material without a density becomes as many as the parts that are of it have densities.
-  void put_densities() {
-    const std::vector<JobMaterial> plain = plan_.materials;
-    std::map<std::pair<std::size_t, double>, std::size_t> made;
-    std::set<std::size_t> taken;
-    std::string told;
-    for (std::size_t r = 0; r < regions().size(); ++r) {
-      const std::size_t m = plan_.material_of[r];
-      if (has_own_density(m)) continue;
-      const double density = density_of_input(r);
-      const auto [at, is_new] = made.try_emplace({m, density}, m);
-      if (is_new && !taken.insert(m).second) {
-        at->second = plan_.materials.size();
-        plan_.materials.push_back(plain[m]);
-        plan_.materials.back().name += " of " + regions()[r].name;
-      }
-      plan_.material_of[r] = at->second;
-      if (density == 0) continue;
-      plan_.materials[at->second].density = density;
-      told += fmt::format("{}{:.6g} of \"{}\"", told.empty() ? "" : ", ", density, regions()[r].name);
-    }
-    if (!told.empty()) out_.note("densities of the input, as they go with newtons: " + told);
-  }
-
-  void put_placeholder() {
-    std::string without;
-    for (std::size_t r = 0; r < regions().size(); ++r)
-      if (plan_.material_of[r] == job_.materials.size())
-        without += fmt::format("{}\"{}\"", without.empty() ? "" : ", ", regions()[r].name);
-    if (without.empty() || out_.options().materials.size() > 0) return;
-    const LengthUnit* unit = unit_named(out_.options().unit);
-    const double length = unit == nullptr ? 1 : unit->metres * 1000;
-    const JobMaterial steel{"placeholder", kSteelYoung * length * length, kSteelPoisson,
-                            kSteelDensity * (length * length) * (length * length)};
-    plan_.materials.push_back(steel);
-    out_.note(
-        fmt::format("PLACEHOLDER: no material is given for {}: E {:.6g}, nu {}, density {:.6g} stand there, which is "
-                    "steel in N, {}; give yours by `materials`",
-                    without, steel.young, steel.poisson, *steel.density,
-                    length == 1 ? "mm and t" : std::string(unit->name) + " and s"));
-  }
 
   void plan_couplings() {
     std::set<std::string> names;
@@ -519,7 +351,7 @@ void add_sets(std::optional<TetMesh>& changed, const TetMesh& mesh, const Solver
   const MeshParts parts(mesh);
   const JobPlaces places(mesh, parts, job);
   std::vector<NamedSet> sets;
-  places.for_each([&](const std::string& name, Wanted wanted) {
+  places.for_each([&](const std::string& name, PlaceSet wanted) {
     const auto is_it = [&](const NamedSet& set) { return set.kind == wanted.kind && set.members == wanted.members; };
     if (!places.part(wanted) && std::ranges::none_of(sets, is_it))
       sets.push_back({name, wanted.kind, std::move(wanted.members)});

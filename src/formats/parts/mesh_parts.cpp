@@ -2,7 +2,8 @@
 
 #include <octafront/io.h>
 
-#include "base/core/parallel.h"
+#include "base/core/parallel_arrays.h"
+#include "base/core/shared_value.h"
 #include "base/mesh/face_table.h"
 
 #include <algorithm>
@@ -56,9 +57,9 @@ MeshParts::MeshParts(const TetMesh& mesh, Hidden hidden)
                                             static_cast<std::uint32_t>(edges())};
   const std::array<const std::vector<std::string>*, 3> names{&mesh.region_names, &mesh.patch_names, &mesh.curve_names};
   for (std::size_t k = 0; k < 3; ++k) {
-    ByNumber by = by_number(counts[k], [&](std::uint32_t i) {
-      return k == 0 ? region_of(i) : k == 1 ? patch_of(i) : curve_of(i);
-    });
+    ByNumber by = k == 0   ? by_number(counts[k], [this](std::uint32_t i) { return region_of(i); })
+                  : k == 1 ? by_number(counts[k], [this](std::uint32_t i) { return patch_of(i); })
+                           : by_number(counts[k], [this](std::uint32_t i) { return curve_of(i); });
     groups_[k] = std::move(by.members);
     numbers_[k] = std::move(by.numbers);
     take_labels(kOrigins[k]);
@@ -143,25 +144,33 @@ const std::vector<Side>& MeshParts::sides() const {
   if (!sides_.empty() || faces() == 0) return sides_;
   std::vector<Triangle> all = mesh_.boundary;
   all.insert(all.end(), mesh_.interfaces.begin(), mesh_.interfaces.end());
-  sides_.assign(all.size(), {kNone, -1});
   const FaceTable table = face_table(mesh_.points.size(), all);
-  std::vector<char> is_listed(mesh_.points.size(), 0);  // most tets touch no face of the list
-  for (const Triangle& t : all)
-    for (const VertexIndex v : t) is_listed[v] = 1;
-  constexpr std::size_t kRange = 16384;
-  const auto candidates =
-      parallel_collect<Side>(mesh_.tets.size(), kRange, [&](std::size_t begin, std::size_t end, auto& found) {
-        for (auto t = static_cast<TetIndex>(begin); t < end; ++t)
-          for (int i = 0; i < 4; ++i) {
-            const auto& [a, b, c] = face_of(mesh_.tets[t], i);
-            if (is_listed[a] && is_listed[b] && is_listed[c]) found.push_back({t, i});
-          }
-      });
-  for (const Side& side : candidates) {
-    const Triangle of_tet = face_of(mesh_.tets[side.tet], side.face);
-    for (const FaceTable::Entry& listed : table.group_of(of_tet))
-      if (sides_[listed.face].tet == kNone || is_even(of_tet) == is_even(all[listed.face])) sides_[listed.face] = side;
-  }
+  RawVector<char> is_listed = parallel_filled(mesh_.points.size(), char{0});  // most tets touch no face of the list
+  parallel_for(all.size(), [&](std::size_t f) {
+    for (const VertexIndex v : all[f]) SharedValue(is_listed[v]).store(1);
+  });
+  // Of tets by their numbers, 4 t + i: the last one behind a face, or else the first one before it.
+  constexpr std::uint32_t kNobody = kNone;
+  RawVector<std::uint32_t> behind = parallel_filled(all.size(), kNobody), before = parallel_filled(all.size(), kNobody);
+  parallel_for(mesh_.tets.size(), [&](std::size_t t) {
+    for (std::uint32_t i = 0; i < 4; ++i) {
+      const Triangle of_tet = face_of(mesh_.tets[t], static_cast<int>(i));
+      const auto& [a, b, c] = of_tet;
+      if (!is_listed[a] || !is_listed[b] || !is_listed[c]) continue;
+      const std::uint32_t number = 4 * static_cast<std::uint32_t>(t) + i;
+      for (const FaceTable::Entry& listed : table.group_of(of_tet)) {
+        if (is_even(of_tet) == is_even(all[listed.face]))
+          SharedValue(behind[listed.face]).lower_to(kNobody - 1 - number);
+        else
+          SharedValue(before[listed.face]).lower_to(number);
+      }
+    }
+  });
+  sides_.assign(all.size(), {kNone, -1});
+  parallel_for(all.size(), [&](std::size_t f) {
+    const std::uint32_t number = behind[f] != kNobody ? kNobody - 1 - behind[f] : before[f];
+    if (number != kNobody) sides_[f] = {number / 4, static_cast<int>(number % 4)};
+  });
   return sides_;
 }
 

@@ -195,9 +195,14 @@ struct ByNumber {
 template <class NumberOf>
 ByNumber by_number(std::uint32_t count, const NumberOf& number_of) {
   // Consecutive elements mostly share a number: equal neighbours are passed over before sorting.
+  constexpr std::size_t kRange = 8192;
   ByNumber by;
-  for (std::uint32_t i = 0; i < count; ++i)
-    if (by.numbers.empty() || by.numbers.back() != number_of(i)) by.numbers.push_back(number_of(i));
+  by.numbers = parallel_collect<std::uint32_t>(
+      count, kRange, [&](std::size_t begin, std::size_t end, std::vector<std::uint32_t>& found) {
+        for (auto i = static_cast<std::uint32_t>(begin); i < end; ++i)
+          if (const std::uint32_t number = number_of(i); found.empty() || found.back() != number)
+            found.push_back(number);
+      });
   std::sort(by.numbers.begin(), by.numbers.end());
   by.numbers.erase(std::unique(by.numbers.begin(), by.numbers.end()), by.numbers.end());
   const auto slot = [&](std::uint32_t i) {

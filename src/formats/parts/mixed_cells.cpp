@@ -1,7 +1,7 @@
 #include "formats/parts/mixed_cells.h"
 
+#include "base/core/renumber.h"
 #include "base/mesh/quadratic_nodes.h"
-#include "base/mesh/renumber.h"
 
 #include <algorithm>
 

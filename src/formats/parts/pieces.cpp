@@ -4,7 +4,7 @@
 
 #include "base/core/parallel.h"
 #include "base/core/shared_value.h"
-#include "base/labels/labels.h"
+#include "base/mesh/labels.h"
 
 #include <algorithm>
 

@@ -1,11 +1,11 @@
 #include "formats/parts/raw_mesh.h"
 
+#include "base/core/renumber.h"
 #include "base/geometry/predicates.h"
 #include "base/geometry/tet_lattice.h"
 #include "base/mesh/adjacency.h"
 #include "base/mesh/face_table.h"
 #include "base/mesh/label_at.h"
-#include "base/mesh/renumber.h"
 #include "formats/parts/boundary.h"
 #include "formats/parts/mesh_parts.h"
 #include "formats/parts/wide_reading.h"

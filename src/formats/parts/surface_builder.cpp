@@ -4,6 +4,7 @@
 #include "formats/parts/polygon.h"
 
 #include <algorithm>
+#include <numeric>
 #include <utility>
 
 #include <fmt/core.h>
@@ -42,6 +43,14 @@ std::uint64_t read_count(Scanner& scan, const Input& input, std::string_view wha
 void SurfaceBuilder::reserve_faces(std::size_t count) {
   triangles_.reserve(count);
   face_of_triangle_.reserve(count);
+}
+
+void SurfaceBuilder::set_triangles(std::vector<Triangle> triangles, std::vector<std::uint32_t> patch) {
+  faces_ = triangles.size();
+  face_of_triangle_.resize(triangles.size());
+  std::iota(face_of_triangle_.begin(), face_of_triangle_.end(), 0u);
+  triangles_ = std::move(triangles);
+  patch_ = std::move(patch);
 }
 
 void SurfaceBuilder::add_triangle(const Triangle& t, std::uint32_t face, std::uint32_t patch) {

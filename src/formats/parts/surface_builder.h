@@ -25,6 +25,8 @@ class SurfaceBuilder {
   void add_face(std::span<const std::uint32_t> corners, const char* at, std::uint32_t patch = 0);
   /// The same of a format that knows the regions on both sides of every face.
   void add_face(std::span<const std::uint32_t> corners, const char* at, std::uint32_t patch, Sides sides);
+  /// All faces of a file at once, where all are triangles on points that there are. `patch`: one each, or none.
+  void set_triangles(std::vector<Triangle> triangles, std::vector<std::uint32_t> patch = {});
   void reserve_faces(std::size_t count);
   std::size_t faces() const { return faces_; }
 

@@ -3,7 +3,7 @@
 // groups of points sets of nodes. What is in no group that is a reference has the tag of its entity, or one that is
 // free. All in the order of their tags.
 
-#include "base/mesh/renumber.h"
+#include "base/core/renumber.h"
 #include "formats/parts/mesh_parts.h"
 #include "formats/parts/msh_stream.h"
 #include "formats/parts/raw_mesh.h"

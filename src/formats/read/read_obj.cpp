@@ -1,13 +1,19 @@
 // Wavefront OBJ: vertices and polygons. Texture coordinates, normals, lines and free-form surfaces are passed over.
 // Objects, groups and materials become patches: one for each combination that has faces.
 
+#include <octafront/error.h>
+
+#include "base/core/parallel.h"
+#include "formats/containers/line_ranges.h"
 #include "formats/containers/scanner.h"
 #include "formats/parts/surface_builder.h"
 #include "formats/read/readers.h"
 
+#include <algorithm>
 #include <map>
 #include <string>
 #include <tuple>
+#include <utility>
 
 #include <fmt/core.h>
 
@@ -33,7 +39,7 @@ class Obj {
   }
 
   SurfaceFile read() {
-    read_all();
+    if (!read_in_ranges()) read_all();
     if (free_form_ > 0)
       builder_.notes.push_back(fmt::format("{} free-form elements left out; only polygons are read", free_form_));
     SurfaceFile file = builder_.finish(input_, "OBJ", true, 1);
@@ -43,6 +49,97 @@ class Obj {
   }
 
  private:
+  /// A name that changes before a face.
+  struct Renamed {
+    std::size_t face;
+    std::string Obj::*which;
+    std::string name;
+  };
+  /// What one range of lines holds.
+  struct Part {
+    std::vector<Vec3> points;
+    std::vector<Triangle> triangles;
+    std::vector<Renamed> names;
+    std::uint64_t free_form = 0;
+  };
+
+  /// All by several threads; false, with nothing read, where a line goes on in the next one, a face is no triangle, or
+  /// a corner is not counted from the begin.
+  bool read_in_ranges() {
+    const std::string_view text{at_, static_cast<std::size_t>(end_ - at_)};
+    if (!reads_in_ranges(text)) return false;
+    const std::vector<std::string_view> ranges = line_ranges(text);
+    std::vector<Part> parts(ranges.size());
+    const std::size_t odd = parallel_find(ranges.size(), [&](std::size_t r) {
+      input_.context.check();
+      return !read_part(ranges[r], parts[r]);
+    });
+    return odd == ranges.size() && join(parts);
+  }
+
+  bool read_part(std::string_view range, Part& part) const {
+    if (range.find('\\') != std::string_view::npos) return false;
+    const Input input = input_of_range(input_, range);
+    Obj reader(input);
+    reader.at_ = range.data();
+    reader.part_ = &part;
+    try {
+      reader.read_all();
+    } catch (const InputError&) {
+      return false;
+    }
+    part.points = std::move(reader.builder_.points);
+    part.free_form = reader.free_form_;
+    return !reader.is_odd_;
+  }
+
+  bool join(std::vector<Part>& parts) {
+    std::vector<std::size_t> first_point{0}, first_triangle{0};
+    for (const Part& part : parts) {
+      first_point.push_back(first_point.back() + part.points.size());
+      first_triangle.push_back(first_triangle.back() + part.triangles.size());
+    }
+    const std::size_t points = first_point.back();
+    const auto is_beyond = [points](const Triangle& t) { return std::max({t[0], t[1], t[2]}) >= points; };
+    if (points >= kNone || first_triangle.back() >= kNone) return false;
+    if (parallel_find(parts.size(), [&](std::size_t p) { return std::ranges::any_of(parts[p].triangles, is_beyond); }) <
+        parts.size())
+      return false;
+    std::vector<std::uint32_t> patch = patches_of(parts, first_triangle);
+    std::vector<Triangle> triangles(first_triangle.back());
+    builder_.points.resize(points);
+    parallel_for(parts.size(), [&](std::size_t p) {
+      std::ranges::copy(parts[p].points, builder_.points.begin() + static_cast<std::ptrdiff_t>(first_point[p]));
+      std::ranges::copy(parts[p].triangles, triangles.begin() + static_cast<std::ptrdiff_t>(first_triangle[p]));
+    });
+    for (const Part& part : parts) free_form_ += part.free_form;
+    builder_.set_triangles(std::move(triangles), std::move(patch));
+    return true;
+  }
+
+  /// Per triangle, or empty where all are in the first patch.
+  std::vector<std::uint32_t> patches_of(const std::vector<Part>& parts, const std::vector<std::size_t>& first) {
+    std::vector<std::uint32_t> patch;
+    std::size_t next = 0;
+    const auto fill_up_to = [&](std::size_t end) {
+      if (next == end) return;
+      const std::uint32_t current = current_patch();
+      if (current != 0 && patch.empty()) patch.resize(first.back());
+      if (!patch.empty())
+        std::fill(patch.begin() + static_cast<std::ptrdiff_t>(next), patch.begin() + static_cast<std::ptrdiff_t>(end),
+                  current);
+      next = end;
+    };
+    for (std::size_t p = 0; p < parts.size(); ++p)
+      for (const Renamed& renamed : parts[p].names) {
+        fill_up_to(first[p] + renamed.face);
+        this->*renamed.which = renamed.name;
+        patch_is_current_ = false;
+      }
+    fill_up_to(first.back());
+    return patch;
+  }
+
   void read_all() {
     while (at_ != end_) {
       line_start_ = at_;
@@ -97,11 +194,11 @@ class Obj {
     } else if (keyword == "f" || keyword == "fo") {
       read_face();
     } else if (keyword == "o") {
-      rename(object_);
+      rename(&Obj::object_);
     } else if (keyword == "g") {
-      rename(group_);
+      rename(&Obj::group_);
     } else if (keyword == "usemtl") {
-      rename(material_);
+      rename(&Obj::material_);
     } else if (keyword == "curv" || keyword == "curv2" || keyword == "surf") {
       ++free_form_;
     }
@@ -125,7 +222,9 @@ class Obj {
     corners_.clear();
     for (std::string_view w = word(); !w.empty(); w = word()) corners_.push_back(corner(w));
     if (corners_.empty()) input_.fail_at_line(line_start_, "a face without corners; the file is damaged");
-    builder_.add_face(corners_, line_start_, current_patch());
+    if (part_ == nullptr) return builder_.add_face(corners_, line_start_, current_patch());
+    is_odd_ = is_odd_ || corners_.size() != 3;
+    if (!is_odd_) part_->triangles.push_back({corners_[0], corners_[1], corners_[2]});
   }
 
   void read_polygon() {
@@ -146,6 +245,7 @@ class Obj {
                           fmt::format("expected a corner such as 7 or 7/1/3, counted from 1, found {}; the file is "
                                       "damaged: export it again",
                                       in_quotes(w)));
+    is_odd_ = is_odd_ || index < 0;
     const auto known = static_cast<std::int64_t>(builder_.points.size());
     if (index < -known || index >= std::int64_t{kNone})
       input_.fail_at_line(at_, fmt::format("the corner {} names a vertex that does not exist ({} are read so far); the "
@@ -155,13 +255,15 @@ class Obj {
     return static_cast<std::uint32_t>(index < 0 ? known + index : index - 1);
   }
 
-  void rename(std::string& name) {
+  void rename(std::string Obj::*which) {
+    std::string& name = this->*which;
     name.clear();
     for (std::string_view w = word(); !w.empty(); w = word()) {
       if (!name.empty()) name += ' ';
       name += w;
     }
     patch_is_current_ = false;
+    if (part_ != nullptr) part_->names.push_back({part_->triangles.size(), which, name});
   }
 
   std::uint32_t current_patch() {
@@ -196,6 +298,8 @@ class Obj {
   bool patch_is_current_ = false;
   std::uint64_t free_form_ = 0;
   bool lines_only_ = false;
+  Part* part_ = nullptr;  ///< where a range of lines is read
+  bool is_odd_ = false;   ///< a range cannot be read by itself
   std::vector<Edge> edges_;
 };
 

@@ -3,9 +3,14 @@
 
 #include <octafront/error.h>
 
+#include "base/core/parallel.h"
+#include "formats/containers/line_ranges.h"
 #include "formats/containers/scanner.h"
 #include "formats/parts/surface_builder.h"
 #include "formats/read/readers.h"
+
+#include <charconv>
+#include <utility>
 
 #include <fmt/core.h>
 
@@ -23,8 +28,10 @@ class Off {
   SurfaceFile read() {
     read_keyword();
     read_counts();
-    read_vertices();
-    read_faces();
+    if (layout_ != Layout::kByLine || !read_in_ranges()) {
+      read_vertices();
+      read_faces();
+    }
     return builder_.finish(input_, keyword_, true, 0);
   }
 
@@ -62,6 +69,62 @@ class Off {
     const std::int64_t n = scan_.integer(what);
     if (n < 0) input_.fail_at_line(at, fmt::format("expected {}, found {}; the file is damaged", what, n));
     return static_cast<std::uint64_t>(n);
+  }
+
+  /// Vertices and triangles by several threads; false, with nothing read, where not each has a line of its own.
+  bool read_in_ranges() {
+    const std::string_view text{scan_.position(), scan_.bytes_left()};
+    if (!reads_in_ranges(text)) return false;
+    check_claim(input_, counts_at_, {vertices_, 6, "vertices"}, scan_.bytes_left());
+    check_claim(input_, counts_at_, {faces_, 2, "faces"}, scan_.bytes_left());
+    const std::vector<std::string_view> ranges = line_ranges(text);
+    std::vector<std::uint64_t> first(ranges.size());
+    parallel_for(ranges.size(),
+                 [&](std::size_t r) { for_each_line(ranges[r], [&](Scanner&) { return ++first[r], true; }); });
+    std::uint64_t lines = 0;
+    for (std::uint64_t& of_range : first) lines += std::exchange(of_range, lines);
+    if (lines < vertices_ + faces_) return false;
+    std::vector<Vec3> points(vertices_);
+    std::vector<Triangle> triangles(faces_);
+    const std::size_t odd = parallel_find(ranges.size(), [&](std::size_t r) {
+      input_.context.check();
+      std::uint64_t line = first[r];
+      return !for_each_line(ranges[r], [&](Scanner& at) {
+        const std::uint64_t i = line++;
+        if (i < vertices_) return read_point(at, points[i]);
+        return i >= vertices_ + faces_ || read_triangle(at, triangles[i - vertices_]);
+      });
+    });
+    if (odd < ranges.size()) return false;
+    builder_.points = std::move(points);
+    builder_.set_triangles(std::move(triangles));
+    return true;
+  }
+
+  /// Calls visit(scanner) at the begin of each line that says anything, as long as it returns true.
+  template <class Visit>
+  bool for_each_line(std::string_view range, const Visit& visit) const {
+    const Input part = input_of_range(input_, range);
+    for (Scanner at(part, '#'); !at.at_end(); at.skip_line())
+      if (!visit(at)) return false;
+    return true;
+  }
+
+  static bool read_point(Scanner& at, Vec3& point) {
+    for (int axis = 0; axis < 3; ++axis)
+      if (at.at_line_end() || !parse_number(at.word(), point[axis]) || !std::isfinite(point[axis])) return false;
+    return true;
+  }
+
+  bool read_triangle(Scanner& at, Triangle& triangle) const {
+    if (at.word() != "3") return false;
+    for (VertexIndex& corner : triangle) {
+      if (at.at_line_end()) return false;
+      const std::string_view word = at.word();
+      const auto [stop, error] = std::from_chars(word.data(), word.data() + word.size(), corner);
+      if (error != std::errc() || stop != word.data() + word.size() || corner >= vertices_) return false;
+    }
+    return true;
   }
 
   void read_vertices() {

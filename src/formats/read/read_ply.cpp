@@ -1,6 +1,10 @@
 // PLY (Stanford polygon format): a header that declares elements and their properties, then their values as text or
 // binary in either byte order. Any elements and properties may stand in any order; what is not needed is passed over.
 
+#include <octafront/error.h>
+
+#include "base/core/parallel.h"
+#include "formats/containers/line_ranges.h"
 #include "formats/containers/scanner.h"
 #include "formats/parts/surface_builder.h"
 #include "formats/read/ply_header.h"
@@ -46,9 +50,16 @@ class BinaryValues {
  public:
   static constexpr bool kIsText = false;
   BinaryValues(const Input& input, const char* begin, bool swap)
-      : input_(input), progress_(input), at_(begin), end_(input.bytes.data() + input.bytes.size()), swap_(swap) {}
+      : input_(&input),
+        progress_(input, begin),
+        at_(begin),
+        end_(input.bytes.data() + input.bytes.size()),
+        swap_(swap) {}
 
   const char* position() const { return at_; }
+  void set_position(const char* at) { at_ = at; }
+  /// Another one that begins there and shows no progress: `quiet` is the same input without a context.
+  BinaryValues from(const Input& quiet, const char* at) const { return BinaryValues(quiet, at, swap_); }
   std::size_t bytes_left() const { return static_cast<std::size_t>(end_ - at_); }
 
   double number(PlyType type, std::string_view what) {
@@ -56,7 +67,7 @@ class BinaryValues {
                          : type == PlyType::kDouble ? get<double>(what)
                                                     : static_cast<double>(whole(type, what));
     if (!std::isfinite(value))
-      input_.fail_at_byte(at_, fmt::format("expected {}, found {}; repair the model where it was made", what, value));
+      input_->fail_at_byte(at_, fmt::format("expected {}, found {}; repair the model where it was made", what, value));
     return value;
   }
 
@@ -64,7 +75,7 @@ class BinaryValues {
     if (type != PlyType::kFloat && type != PlyType::kDouble) return whole(type, what);
     const double value = number(type, what);
     if (!(std::abs(value) < 9e15) || value != std::floor(value))
-      input_.fail_at_byte(at_, fmt::format("expected {}, a whole number, found {}", what, value));
+      input_->fail_at_byte(at_, fmt::format("expected {}, a whole number, found {}", what, value));
     return static_cast<std::int64_t>(value);
   }
 
@@ -110,11 +121,11 @@ class BinaryValues {
   }
 
   [[noreturn]] void fail_truncated(std::string_view what) const {
-    input_.fail_at_byte(
+    input_->fail_at_byte(
         at_, fmt::format("expected {}, but the file ends here; it is truncated: copy or export it again", what));
   }
 
-  const Input& input_;
+  const Input* input_;
   ReadingProgress progress_;
   const char* at_;
   const char* end_;
@@ -202,6 +213,7 @@ class PlyBody {
         input_.fail_at_line(
             element.declared_at,
             fmt::format("the vertices do not have one property \"{}\" each; export the file again", kAxes[a]));
+    if (read_points_in_records(element, axis_of)) return;
     builder_.points.reserve(builder_.points.size() + element.count);
     for (std::uint64_t i = 0; i < element.count; ++i) {
       Vec3 v;
@@ -214,6 +226,85 @@ class PlyBody {
       }
       builder_.points.push_back(v);
     }
+  }
+
+  /// Calls read(values, i) for all of an element, by several threads, where each takes `size` bytes; false, with
+  /// nothing passed over, if one cannot be read so.
+  template <class Read>
+  bool read_records([[maybe_unused]] const PlyElement& element, [[maybe_unused]] std::uint64_t size,
+                    [[maybe_unused]] const Read& read) {
+    if constexpr (!Values::kIsText) {
+      constexpr std::uint64_t kFewRecords = 1024;
+      if (thread_count() == 1 || element.count < kFewRecords || element.count > values_.bytes_left() / size)
+        return false;
+      const Input quiet = input_of_range(input_, input_.bytes);
+      const char* const first = values_.position();
+      const auto is_odd = [&](std::size_t i) {
+        try {
+          Values values = values_.from(quiet, first + i * size);
+          return !read(values, i);
+        } catch (const InputError&) {
+          return true;
+        }
+      };
+      input_.context.check();
+      if (parallel_find(element.count, is_odd) < element.count) return false;
+      values_.set_position(first + element.count * size);
+      return true;
+    }
+    return false;
+  }
+
+  bool read_points_in_records(const PlyElement& element, const std::vector<int>& axis_of) {
+    const std::size_t first = builder_.points.size();
+    std::uint64_t size = 0;
+    for (const PlyProperty& p : element.properties) {
+      if (p.is_list) return false;
+      size += Values::least_bytes(p.type);
+    }
+    builder_.points.resize(first + element.count);
+    const bool done = read_records(element, size, [&](auto& values, std::size_t i) {
+      for (std::size_t k = 0; k < axis_of.size(); ++k) {
+        const PlyType type = element.properties[k].type;
+        if (axis_of[k] < 0)
+          values.skip(type, 1);
+        else
+          builder_.points[first + i][axis_of[k]] = values.number(type, "a coordinate");
+      }
+      return true;
+    });
+    if (!done) builder_.points.resize(first);
+    return done;
+  }
+
+  template <class IsCorners>
+  bool read_triangles_in_records(const PlyElement& element, const IsCorners& is_corners) {
+    std::uint64_t size = 0;
+    for (const PlyProperty& p : element.properties) {
+      if (p.is_list && !is_corners(p)) return false;
+      size +=
+          p.is_list ? Values::least_bytes(p.count_type) + 3 * Values::least_bytes(p.type) : Values::least_bytes(p.type);
+    }
+    if (builder_.faces() > 0) return false;
+    const std::size_t points = builder_.points.size();  // those behind the faces in the file are looked for one by one
+    std::vector<Triangle> triangles(element.count);
+    const bool done = read_records(element, size, [&](auto& values, std::size_t i) {
+      for (const PlyProperty& p : element.properties) {
+        if (!p.is_list) {
+          values.skip(p.type, 1);
+          continue;
+        }
+        if (values.integer(p.count_type, "the length of a list") != 3) return false;
+        for (VertexIndex& corner : triangles[i]) {
+          const std::int64_t v = values.integer(p.type, "the number of a vertex");
+          if (v < 0 || v >= static_cast<std::int64_t>(points)) return false;
+          corner = static_cast<VertexIndex>(v);
+        }
+      }
+      return true;
+    });
+    if (done) builder_.set_triangles(std::move(triangles));
+    return done;
   }
 
   void read_edges(const PlyElement& element, std::vector<Edge>& edges) {
@@ -253,6 +344,7 @@ class PlyBody {
     };
     const bool has_sides = has("front") && has("back");
     if (!has_sides) builder_.region_names.clear();
+    if (!has_sides && !has("patch") && read_triangles_in_records(element, is_corners)) return;
     builder_.reserve_faces(element.count);
     for (std::uint64_t i = 0; i < element.count; ++i) {
       const char* const at = values_.position();

@@ -1,12 +1,13 @@
 // STL: triangles without connectivity, as text (any number of named solids) or as records of 50 bytes in single
 // precision. The text keeps double precision.
 
+#include "base/core/parallel.h"
 #include "formats/containers/scanner.h"
 #include "formats/parts/surface_builder.h"
 #include "formats/read/readers.h"
 
-#include <array>
 #include <cstring>
+#include <utility>
 
 #include <fmt/core.h>
 
@@ -136,25 +137,26 @@ SurfaceFile read_binary_stl(const Input& input) {
                     count, wanted, bytes.size(), (bytes.size() - kHeader) / kRecord));
   if (count >= kNone / 3) input.fail(fmt::format("holds {} triangles; {} are possible", count, kNone / 3 - 1));
   SurfaceBuilder builder;
-  builder.points.reserve(std::size_t{3} * count);
-  builder.reserve_faces(count);
-  ReadingProgress progress(input);
-  for (std::uint32_t t = 0; t < count; ++t) {
-    const char* const record = bytes.data() + kHeader + kRecord * std::size_t{t};
-    const std::uint32_t first = 3 * t;
-    progress.reach(record);
-    for (int corner = 0; corner < 3; ++corner) {
-      const char* const p = record + 12 + 12 * corner;
-      const Vec3 v{little_endian_float(p), little_endian_float(p + 4), little_endian_float(p + 8)};
-      if (!is_finite(v))
-        input.fail_at_byte(p,
-                           fmt::format("corner {} of triangle {} is ({}, {}, {}), not a point; repair the model where "
-                                       "it was made",
-                                       corner, t, v.x, v.y, v.z));
-      builder.points.push_back(v);
-    }
-    builder.add_face(std::array{first, first + 1, first + 2}, record);
+  const auto corner_at = [&](std::size_t corner) {
+    return bytes.data() + kHeader + kRecord * (corner / 3) + 12 + 12 * (corner % 3);
+  };
+  builder.points.resize(std::size_t{3} * count);
+  std::vector<Triangle> triangles(count);
+  const std::size_t bad = parallel_find(builder.points.size(), [&](std::size_t i) {
+    const char* const p = corner_at(i);
+    builder.points[i] = {little_endian_float(p), little_endian_float(p + 4), little_endian_float(p + 8)};
+    triangles[i / 3][i % 3] = static_cast<std::uint32_t>(i);
+    return !is_finite(builder.points[i]);
+  });
+  input.context.check();
+  if (bad < builder.points.size()) {
+    const Vec3& v = builder.points[bad];
+    input.fail_at_byte(corner_at(bad),
+                       fmt::format("corner {} of triangle {} is ({}, {}, {}), not a point; repair the model where it "
+                                   "was made",
+                                   bad % 3, bad / 3, v.x, v.y, v.z));
   }
+  builder.set_triangles(std::move(triangles));
   if (bytes.size() > wanted)
     builder.notes.push_back(fmt::format("{} bytes behind the last triangle ignored", bytes.size() - wanted));
   return builder.finish(input, "binary STL", false, 0);

@@ -170,7 +170,9 @@ class MshWhole {
       for (const std::uint32_t m : members.subspan(begin, end - begin))
         nodes_of.put<std::uint64_t>(dimension, element(cells_, dimension, m), [&](std::uint64_t tag) {
           const SharedValue of_node(of_node_[tag - 1]);
-          if (of_node.load() == kNone) of_node.store(e);
+          const std::uint32_t known = of_node.load();
+          if (known == e) return;  // whoever took it has put it into a box
+          if (known == kNone) of_node.store(e);
           sum.box.add(mesh_.mesh().points[tag - 1]);
         });
       return sum;

@@ -82,67 +82,22 @@ std::optional<VoxelType> type_of_nrrd(const std::string& name) {
   return found == kNames.end() ? std::nullopt : std::optional(found->second);
 }
 
-class Nrrd {
+/// Fields and keys up to the empty line, or the end.
+class NrrdHeader {
  public:
-  explicit Nrrd(const Reading& reading) : reading_(reading), input_(reading.input) {}
-
-  Image read() {
-    read_lines();
-    read_sizes();
-    image_.format = "NRRD";
-    place();
-    check_grid(input_, image_.grid);
-    read_values();
-    name_segments();
-    return std::move(image_);
-  }
-
- private:
   struct Field {
     std::string value;
     const char* at = nullptr;
   };
 
-  /// Fields and keys up to the empty line, or the end.
-  void read_lines() {
-    std::size_t at = input_.bytes.find('\n') + 1;
-    if (at == 0) input_.fail("ends behind the first line of an NRRD header; it is truncated: copy or export it again");
-    constexpr std::size_t kMostHeader = std::size_t{1} << 24;
-    for (;;) {
-      if (at >= input_.bytes.size() || at > kMostHeader) break;
-      const std::size_t end = std::min(input_.bytes.find('\n', at), input_.bytes.size());
-      std::string_view line = input_.bytes.substr(at, end - at);
-      if (line.ends_with('\r')) line.remove_suffix(1);
-      const char* const begin = input_.bytes.data() + at;
-      at = end + 1;
-      if (line.empty()) {
-        data_at_ = std::min(at, input_.bytes.size());
-        break;
-      }
-      read_line(line, begin);
-    }
-  }
+  explicit NrrdHeader(const io::Input& input) : input_(input) { read_lines(); }
 
-  void read_line(std::string_view line, const char* at) {
-    if (line.starts_with('#') || list_ == List::kOpen) {
-      if (list_ == List::kOpen && !line.starts_with('#')) files_.names.emplace_back(io::trimmed(line));
-      return;
-    }
-    const std::size_t colon = line.find(':');
-    if (colon == std::string_view::npos)
-      input_.fail_at_line(
-          at, fmt::format("expected \"field: value\" in the NRRD header, found {}", io::in_quotes(line.substr(0, 60))));
-    if (line.substr(colon).starts_with(":=")) {
-      keys_.insert_or_assign(std::string(line.substr(0, colon)), std::string(line.substr(colon + 2)));
-      return;
-    }
-    std::string name = lower(io::trimmed(line.substr(0, colon)));
-    std::erase(name, ' ');  // "data file" is "datafile" too
-    std::erase(name, '-');
-    const std::string value(io::trimmed(line.substr(colon + 1)));
-    fields_.insert_or_assign(name, Field{value, at});
-    if (name == "datafile" && value.starts_with("LIST")) list_ = List::kOpen;
-  }
+  const std::map<std::string, std::string>& keys() const { return keys_; }
+  /// Names of files below "data file: LIST", which is the last field.
+  const std::vector<std::string>& listed_files() const { return listed_; }
+  bool lists_files() const { return lists_files_; }
+  /// The first byte behind the empty line; 0: there is none.
+  std::size_t end() const { return end_; }
 
   const Field* field(const std::string& name) const {
     const auto found = fields_.find(name);
@@ -171,9 +126,87 @@ class Nrrd {
     return static_cast<std::int64_t>(value);
   }
 
+  /// Takes "(x,y,z)" from the front of a text.
+  Vec3 vector(const Field& f, std::string_view& rest) const {
+    const std::size_t end = rest.find(')');
+    if (!rest.starts_with('(') || end == std::string_view::npos)
+      input_.fail_at_line(f.at, fmt::format("expected a vector such as (1,0,0), found {}", io::in_quotes(rest)));
+    std::string inside(rest.substr(1, end - 1));
+    std::replace(inside.begin(), inside.end(), ',', ' ');
+    const std::vector<std::string> words = words_of(inside);
+    if (words.size() != 3)
+      input_.fail_at_line(f.at, fmt::format("expected three coordinates, found {}", io::in_quotes(rest)));
+    rest = io::trimmed(rest.substr(end + 1));
+    return {number(f, words[0]), number(f, words[1]), number(f, words[2])};
+  }
+
+ private:
+  void read_lines() {
+    std::size_t at = input_.bytes.find('\n') + 1;
+    if (at == 0) input_.fail("ends behind the first line of an NRRD header; it is truncated: copy or export it again");
+    constexpr std::size_t kMostHeader = std::size_t{1} << 24;
+    for (;;) {
+      if (at >= input_.bytes.size() || at > kMostHeader) break;
+      const std::size_t end = std::min(input_.bytes.find('\n', at), input_.bytes.size());
+      std::string_view line = input_.bytes.substr(at, end - at);
+      if (line.ends_with('\r')) line.remove_suffix(1);
+      const char* const begin = input_.bytes.data() + at;
+      at = end + 1;
+      if (line.empty()) {
+        end_ = std::min(at, input_.bytes.size());
+        break;
+      }
+      read_line(line, begin);
+    }
+  }
+
+  void read_line(std::string_view line, const char* at) {
+    if (line.starts_with('#') || lists_files_) {
+      if (lists_files_ && !line.starts_with('#')) listed_.emplace_back(io::trimmed(line));
+      return;
+    }
+    const std::size_t colon = line.find(':');
+    if (colon == std::string_view::npos)
+      input_.fail_at_line(
+          at, fmt::format("expected \"field: value\" in the NRRD header, found {}", io::in_quotes(line.substr(0, 60))));
+    if (line.substr(colon).starts_with(":=")) {
+      keys_.insert_or_assign(std::string(line.substr(0, colon)), std::string(line.substr(colon + 2)));
+      return;
+    }
+    std::string name = lower(io::trimmed(line.substr(0, colon)));
+    std::erase(name, ' ');  // "data file" is "datafile" too
+    std::erase(name, '-');
+    const std::string value(io::trimmed(line.substr(colon + 1)));
+    fields_.insert_or_assign(name, Field{value, at});
+    if (name == "datafile" && value.starts_with("LIST")) lists_files_ = true;
+  }
+
+  const io::Input& input_;
+  std::map<std::string, Field> fields_;
+  std::map<std::string, std::string> keys_;
+  bool lists_files_ = false;
+  std::vector<std::string> listed_;
+  std::size_t end_ = 0;
+};
+
+class Nrrd {
+ public:
+  explicit Nrrd(const Reading& reading) : reading_(reading), input_(reading.input), header_(reading.input) {}
+
+  Image read() {
+    read_sizes();
+    image_.format = "NRRD";
+    place();
+    check_grid(input_, image_.grid);
+    read_values();
+    name_segments();
+    return std::move(image_);
+  }
+
+ private:
   /// One value per axis of the file.
   std::vector<std::string> per_axis(const std::string& name) const {
-    const Field* f = field(name);
+    const NrrdHeader::Field* f = header_.field(name);
     if (f == nullptr) return {};
     std::vector<std::string> words = words_of(f->value);
     if (words.size() != dimension_)
@@ -183,15 +216,15 @@ class Nrrd {
   }
 
   void read_sizes() {
-    const Field& f = required("dimension");
-    const std::int64_t dimension = whole(f, f.value);
+    const NrrdHeader::Field& f = header_.required("dimension");
+    const std::int64_t dimension = header_.whole(f, f.value);
     if (dimension >= 0 && dimension < 3) fail_flat(input_);
     if (dimension > 4 || dimension < 0)
       input_.fail_at_line(f.at,
                           fmt::format("has {} dimensions; three are read here, or four with `series`", dimension));
     dimension_ = static_cast<std::size_t>(dimension);
-    const Field& sizes = required("sizes");
-    for (const std::string& word : per_axis("sizes")) sizes_.push_back(whole(sizes, word));
+    const NrrdHeader::Field& sizes = header_.required("sizes");
+    for (const std::string& word : per_axis("sizes")) sizes_.push_back(header_.whole(sizes, word));
     vectors_ = vectors();
     find_extra_axis();
     Sizes space{};
@@ -225,7 +258,7 @@ class Nrrd {
 
   /// "(1,0,0) none (0,1,0)": one per axis, nullopt for none. Empty if the header has no directions.
   std::vector<std::optional<Vec3>> vectors() const {
-    const Field* f = field("spacedirections");
+    const NrrdHeader::Field* f = header_.field("spacedirections");
     std::vector<std::optional<Vec3>> all;
     if (f == nullptr) return all;
     std::string_view rest = io::trimmed(f->value);
@@ -235,7 +268,7 @@ class Nrrd {
         rest = io::trimmed(rest.substr(4));
         continue;
       }
-      all.emplace_back(vector(*f, rest));
+      all.emplace_back(header_.vector(*f, rest));
     }
     if (all.size() != dimension_)
       input_.fail_at_line(f->at,
@@ -243,34 +276,22 @@ class Nrrd {
     return all;
   }
 
-  /// Takes "(x,y,z)" from the front of a text.
-  Vec3 vector(const Field& f, std::string_view& rest) const {
-    const std::size_t end = rest.find(')');
-    if (!rest.starts_with('(') || end == std::string_view::npos)
-      input_.fail_at_line(f.at, fmt::format("expected a vector such as (1,0,0), found {}", io::in_quotes(rest)));
-    std::string inside(rest.substr(1, end - 1));
-    std::replace(inside.begin(), inside.end(), ',', ' ');
-    const std::vector<std::string> words = words_of(inside);
-    if (words.size() != 3)
-      input_.fail_at_line(f.at, fmt::format("expected three coordinates, found {}", io::in_quotes(rest)));
-    rest = io::trimmed(rest.substr(end + 1));
-    return {number(f, words[0]), number(f, words[1]), number(f, words[2])};
-  }
-
   void place() {
     ImageGrid& grid = image_.grid;
     if (!vectors_.empty()) {
       for (std::size_t i = 0; i < 3; ++i) grid.axes[i] = *vectors_[axes_[i]];
-      if (const Field* f = field("spaceorigin")) {
+      if (const NrrdHeader::Field* f = header_.field("spaceorigin")) {
         std::string_view value = f->value;
-        grid.origin = vector(*f, value);
+        grid.origin = header_.vector(*f, value);
       }
     } else {
       const std::vector<std::string> spacings = per_axis("spacings"), mins = per_axis("axismins");
       for (std::size_t i = 0; i < 3; ++i) {
         const int axis = static_cast<int>(i);
-        if (!spacings.empty()) grid.axes[i][axis] = finite_or(number(required("spacings"), spacings[axes_[i]]), 1);
-        if (!mins.empty()) grid.origin[axis] = finite_or(number(required("axismins"), mins[axes_[i]]), 0);
+        if (!spacings.empty())
+          grid.axes[i][axis] = finite_or(header_.number(header_.required("spacings"), spacings[axes_[i]]), 1);
+        if (!mins.empty())
+          grid.origin[axis] = finite_or(header_.number(header_.required("axismins"), mins[axes_[i]]), 0);
       }
       if (spacings.empty()) image_.notes.emplace_back("the header has no spacing; 1 is taken");
     }
@@ -280,7 +301,7 @@ class Nrrd {
   static double finite_or(double value, double otherwise) { return std::isfinite(value) ? value : otherwise; }
 
   void set_frame() {
-    const std::string space = lower(text("space"));
+    const std::string space = lower(header_.text("space"));
     for (const auto& [prefix, short_name] : {std::pair{"right-anterior-superior", "RAS"},
                                              {"ras", "RAS"},
                                              {"left-anterior-superior", "LAS"},
@@ -288,22 +309,23 @@ class Nrrd {
                                              {"left-posterior-superior", "LPS"},
                                              {"lps", "LPS"}})
       if (space.starts_with(prefix)) image_.frame = short_name;
-    const std::vector<std::string> units = words_of(text(field("spaceunits") != nullptr ? "spaceunits" : "units"));
+    const std::vector<std::string> units =
+        words_of(header_.text(header_.field("spaceunits") != nullptr ? "spaceunits" : "units"));
     if (!units.empty()) {
-      std::string unit = units[field("spaceunits") != nullptr ? 0 : std::min(axes_[0], units.size() - 1)];
+      std::string unit = units[header_.field("spaceunits") != nullptr ? 0 : std::min(axes_[0], units.size() - 1)];
       std::erase(unit, '"');
       if (unit == "mm" || unit == "m" || unit == "um" || unit == "cm") image_.unit = unit;
     }
   }
 
   StoredVoxels stored() const {
-    const Field& f = required("type");
+    const NrrdHeader::Field& f = header_.required("type");
     const std::optional<VoxelType> type = type_of_nrrd(lower(f.value));
     if (!type)
       input_.fail_at_line(f.at, fmt::format("{} is no type of voxels that is read here", io::in_quotes(f.value)));
     StoredVoxels s;
     s.type = *type;
-    const std::string endian = lower(text("endian"));
+    const std::string endian = lower(header_.text("endian"));
     if (endian == "big") {
       s.big_endian = true;
     } else if (endian != "little" && bytes_of(s.type) > 1 && !is_text()) {
@@ -312,7 +334,7 @@ class Nrrd {
     return s;
   }
 
-  std::string encoding() const { return lower(required("encoding").value); }
+  std::string encoding() const { return lower(header_.required("encoding").value); }
   bool is_text() const { return encoding() == "ascii" || encoding() == "text" || encoding() == "txt"; }
 
   void read_values() {
@@ -322,13 +344,13 @@ class Nrrd {
       image_.format += ", compressed";
     } else if (how != "raw" && !is_text()) {
       input_.fail_at_line(
-          required("encoding").at,
+          header_.required("encoding").at,
           fmt::format("the encoding {} is not read here; export it as raw or gzip", io::in_quotes(how)));
     }
-    if (const Field* f = field("lineskip"))
-      files_.skipped_lines = static_cast<std::uint64_t>(std::max<std::int64_t>(0, whole(*f, f->value)));
-    if (const Field* f = field("byteskip")) {
-      const std::int64_t skip = whole(*f, f->value);
+    if (const NrrdHeader::Field* f = header_.field("lineskip"))
+      files_.skipped_lines = static_cast<std::uint64_t>(std::max<std::int64_t>(0, header_.whole(*f, f->value)));
+    if (const NrrdHeader::Field* f = header_.field("byteskip")) {
+      const std::int64_t skip = header_.whole(*f, f->value);
       files_.at_end = skip < 0;
       files_.skipped_bytes = static_cast<std::uint64_t>(std::max<std::int64_t>(0, skip));
     }
@@ -346,24 +368,24 @@ class Nrrd {
     const bool interleaved = extra_ == 0;
     const Picked picked{interleaved ? list : list * voxels, voxels, interleaved ? lists : 1};
     return files_.names.empty()
-               ? read_attached(reading_, data_at_, files_, voxels * lists, picked, stored(), image_.notes)
+               ? read_attached(reading_, header_.end(), files_, voxels * lists, picked, stored(), image_.notes)
                : read_data_files(reading_, files_, voxels * lists, picked, stored(), image_.notes);
   }
 
   /// 3D Slicer's segments that overlap lie in several layers, the values of a voxel.
   bool has_layers() const {
     return extra_ && reading_.choice.series == 0 && !is_text() &&
-           std::ranges::any_of(keys_, [](const auto& k) { return k.first.ends_with("_Layer"); });
+           std::ranges::any_of(header_.keys(), [](const auto& k) { return k.first.ends_with("_Layer"); });
   }
 
   void read_layers(std::uint64_t lists) {
     find_files();
     Layers layers;
     for (std::uint64_t list = 0; list < lists; ++list) layers.values.push_back(values_of_list(list, lists));
-    for (std::size_t n = 0; keys_.contains(fmt::format("Segment{}_Layer", n)); ++n) {
+    for (std::size_t n = 0; header_.keys().contains(fmt::format("Segment{}_Layer", n)); ++n) {
       const auto key = [&](const char* what) {
-        const auto found = keys_.find(fmt::format("Segment{}_{}", n, what));
-        return found == keys_.end() ? std::string() : found->second;
+        const auto found = header_.keys().find(fmt::format("Segment{}_{}", n, what));
+        return found == header_.keys().end() ? std::string() : found->second;
       };
       double layer = 0, value = 0;
       if (!io::parse_number(key("Layer"), layer) || !io::parse_number(key("LabelValue"), value) || !(layer >= 0) ||
@@ -377,24 +399,28 @@ class Nrrd {
   }
 
   void read_text() {
-    if (extra_ || field("datafile") != nullptr)
+    if (extra_ || header_.field("datafile") != nullptr)
       input_.fail("holds text that is not one volume in the file itself; export it as raw or gzip");
     image_.format += ", text";
     image_.values =
-        read_text_voxels(input_, input_.bytes.data() + data_at_, image_.grid.size, stored().type, image_.notes);
+        read_text_voxels(input_, input_.bytes.data() + header_.end(), image_.grid.size, stored().type, image_.notes);
   }
 
   void find_files() {
-    const Field* f = field("datafile");
+    const NrrdHeader::Field* f = header_.field("datafile");
     if (f == nullptr) {
-      if (data_at_ == 0) input_.fail("its header has no end (an empty line) and names no data file; it is truncated");
+      if (header_.end() == 0)
+        input_.fail("its header has no end (an empty line) and names no data file; it is truncated");
       return;
     }
-    if (list_ == List::kOpen) return;
+    if (header_.lists_files()) {
+      files_.names = header_.listed_files();
+      return;
+    }
     const std::vector<std::string> words = words_of(f->value);
     if (words.size() >= 3 && words[0].find('%') != std::string::npos) {
-      const std::int64_t step = words.size() > 3 ? whole(*f, words[3]) : 1;
-      files_.names = numbered_names(input_, words[0], whole(*f, words[1]), whole(*f, words[2]), step);
+      const std::int64_t step = words.size() > 3 ? header_.whole(*f, words[3]) : 1;
+      files_.names = numbered_names(input_, words[0], header_.whole(*f, words[1]), header_.whole(*f, words[2]), step);
     } else {
       files_.names = {f->value};
     }
@@ -403,28 +429,25 @@ class Nrrd {
   /// Segment3_Name:=liver, Segment3_LabelValue:=7, Segment3_Layer:=0
   void name_segments() {
     if (!image_.names.empty()) return;
-    for (const auto& [key, name] : keys_) {
+    for (const auto& [key, name] : header_.keys()) {
       if (!key.starts_with("Segment") || !key.ends_with("_Name")) continue;
       const std::string prefix = key.substr(0, key.size() - 4);
-      const auto value = keys_.find(prefix + "LabelValue"), layer = keys_.find(prefix + "Layer");
+      const auto value = header_.keys().find(prefix + "LabelValue"), layer = header_.keys().find(prefix + "Layer");
       double number = 0;
-      if (value == keys_.end() || !io::parse_number(value->second, number) || !(std::abs(number) < 1e15)) continue;
-      if (layer != keys_.end() && extra_ && layer->second != std::to_string(series_)) continue;
+      if (value == header_.keys().end() || !io::parse_number(value->second, number) || !(std::abs(number) < 1e15))
+        continue;
+      if (layer != header_.keys().end() && extra_ && layer->second != std::to_string(series_)) continue;
       image_.names.push_back({static_cast<std::int64_t>(number), name});
     }
     std::sort(image_.names.begin(), image_.names.end(),
               [](const LabelName& a, const LabelName& b) { return a.value < b.value; });
   }
 
-  enum class List { kNone, kOpen };
-
   const Reading& reading_;
   const io::Input& input_;
-  std::map<std::string, Field> fields_;
-  std::map<std::string, std::string> keys_;
-  List list_ = List::kNone;
+  NrrdHeader header_;
   DataFiles files_;
-  std::size_t data_at_ = 0, dimension_ = 0;
+  std::size_t dimension_ = 0;
   std::vector<std::int64_t> sizes_;  ///< of all axes
   std::vector<std::optional<Vec3>> vectors_;
   std::array<std::size_t, 3> axes_{};  ///< of space

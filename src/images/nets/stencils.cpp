@@ -54,7 +54,7 @@ void collect(const Net& net, const Groups<>& quads_at, VertexIndex v, std::vecto
 /// What collect(v, items) leaves for each vertex. It is called twice.
 template <class Item, class Collect>
 Groups<Item> per_vertex(std::size_t n, const Collect& collect_at) {
-  std::vector<std::uint32_t> first(n + 1, 0);
+  RawVector<std::uint32_t> first(n + 1, 0);
   PerThread<std::vector<Item>> scratch;
   parallel_for(n, [&](std::size_t v) {
     std::vector<Item>& items = scratch.local();
@@ -62,7 +62,7 @@ Groups<Item> per_vertex(std::size_t n, const Collect& collect_at) {
     first[v + 1] = static_cast<std::uint32_t>(items.size());
   });
   for (std::size_t v = 0; v < n; ++v) first[v + 1] += first[v];
-  std::vector<Item> all(first[n]);
+  RawVector<Item> all(first[n]);
   parallel_for(n, [&](std::size_t v) {
     std::vector<Item>& items = scratch.local();
     collect_at(static_cast<VertexIndex>(v), items);

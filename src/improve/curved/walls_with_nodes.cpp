@@ -1,4 +1,4 @@
-#include "base/mesh/renumber.h"
+#include "base/core/renumber.h"
 #include "improve/curved/curved.h"
 #include "improve/curved/face_nodes.h"
 

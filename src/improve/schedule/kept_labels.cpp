@@ -3,8 +3,8 @@
 #include <octafront/named_groups.h>
 
 #include "base/core/flat_map.h"
+#include "base/core/renumber.h"
 #include "base/mesh/adjacency.h"
-#include "base/mesh/renumber.h"
 
 #include <algorithm>
 #include <numeric>

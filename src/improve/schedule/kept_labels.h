@@ -2,7 +2,7 @@
 
 #include <octafront/tet_mesh.h>
 
-#include "base/labels/labels.h"
+#include "base/mesh/labels.h"
 
 #include <cstdint>
 #include <optional>

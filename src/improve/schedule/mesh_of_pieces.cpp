@@ -1,13 +1,13 @@
 #include "improve/schedule/mesh_of_pieces.h"
 
 #include "base/core/groups.h"
+#include "base/core/index_range.h"
 #include "base/core/parallel.h"
 #include "base/core/shared_value.h"
 #include "base/core/stage_timer.h"
 #include "base/geometry/self_intersection.h"
 #include "base/geometry/spatial_order.h"
-#include "base/mesh/index_range.h"
-#include "base/mesh/renumber.h"
+#include "base/mesh/renumber_mesh.h"
 #include "base/shared/in_parts.h"
 #include "base/shared/marks.h"
 #include "base/shared/packing.h"
@@ -218,9 +218,8 @@ MeshOfPieces::Division MeshOfPieces::divide(const std::vector<std::uint8_t>& nea
 Cells MeshOfPieces::cells_of_points(std::span<const VertexIndex> held, int stage) const {
   const Cube cube = cube_of_stage(box_, stage);
   if (held.size() == points_.size()) return cells_of(points_, cube, most_);
-  std::vector<Vec3> places;
-  places.reserve(held.size());
-  for (const VertexIndex v : held) places.push_back(points_[v]);
+  std::vector<Vec3> places(held.size());
+  parallel_for(held.size(), [&](std::size_t k) { places[k] = points_[held[k]]; });
   return cells_of(places, cube, most_);
 }
 
@@ -396,7 +395,7 @@ std::vector<Bytes> MeshOfPieces::apply(std::vector<Change>& changes, const Share
   comm_.sum(std::span(&more_tets, 1), "numbers of elements");
   live_ = static_cast<std::size_t>(static_cast<std::int64_t>(live_) + more_tets);
   gather_in_parts(comm_, placed, "vertices of pieces", [&](int, std::span<const EditMesh::Moved> part) {
-    for (const auto& [v, at] : part) points_[v] = at;
+    parallel_for(part.size(), [&](std::size_t i) { points_[part[i].vertex] = part[i].to; });
   });
   gather_in_parts(comm_, boundary, "boundary of pieces", [&](int, std::span<const EditMesh::ChangedTriangle> part) {
     for (const auto& [number, corners] : part) rest_.boundary[number] = corners;
@@ -533,7 +532,7 @@ TetMesh MeshOfPieces::release(Features* features, std::vector<VertexIndex>* numb
   is_used = {};
   if (!comm_.alone()) sort_among_ranks(along.size());
   const Groups<> order = order_by_key(tets_, along.size());
-  const std::vector<TetIndex>& kept = order.items();
+  const std::span<const TetIndex> kept = order.items();
   // In their own place, corner by corner: all at once would be there twice.
   std::vector<std::uint32_t> column(kept.size());
   for (std::size_t i = 0; i < 4; ++i) {

@@ -12,8 +12,8 @@
 #include <octafront/tet_mesh.h>
 
 #include "base/core/function_ref.h"
+#include "base/geometry/blocks.h"
 #include "base/mesh/features.h"
-#include "base/shared/blocks.h"
 #include "base/shared/comm.h"
 #include "base/shared/shared_tets.h"
 #include "base/shared/shares.h"

@@ -4,10 +4,10 @@
 
 #include "base/core/flat_map.h"
 #include "base/geometry/predicates.h"
-#include "base/labels/labels.h"
 #include "base/mesh/adjacency.h"
 #include "base/mesh/edge_table.h"
 #include "base/mesh/face_table.h"
+#include "base/mesh/labels.h"
 
 #include <algorithm>
 #include <array>

@@ -4,12 +4,12 @@
 
 #include "base/core/fixed_point.h"
 #include "base/core/groups.h"
+#include "base/core/index_range.h"
 #include "base/core/parallel.h"
 #include "base/core/validate.h"
 #include "base/geometry/predicates.h"
-#include "base/labels/labels.h"
-#include "base/mesh/index_range.h"
-#include "base/mesh/renumber.h"
+#include "base/mesh/labels.h"
+#include "base/mesh/renumber_mesh.h"
 
 #include <algorithm>
 #include <array>
@@ -89,7 +89,7 @@ void EditMesh::take(TetMesh& mesh) {
     complex_.tets[k] = mesh.tets[order.items()[k]];
     if (had_regions_) region_[k] = mesh.region[order.items()[k]];
   });
-  numbers_ = order.items();
+  numbers_.assign(order.items().begin(), order.items().end());
   mesh.tets = std::vector<Tet>();
 }
 
@@ -177,7 +177,7 @@ TetMesh EditMesh::release() {
   complex_.across = std::vector<HalfFace>();
   shapes_ = std::vector<Shape>();
   const Groups<> order = order_by_key(complex_.tets, points_.size());
-  const std::vector<TetIndex>& kept = order.items();
+  const std::span<const TetIndex> kept = order.items();
   mesh.tets.resize(kept.size());
   if (had_regions_) mesh.region.resize(kept.size());
   parallel_for(kept.size(), [&](std::size_t k) {

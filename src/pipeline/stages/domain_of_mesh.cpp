@@ -4,10 +4,10 @@
 #include <octafront/named_groups.h>
 
 #include "base/core/flat_map.h"
+#include "base/core/renumber.h"
 #include "base/mesh/adjacency.h"
 #include "base/mesh/complex_patches.h"
 #include "base/mesh/face_table.h"
-#include "base/mesh/renumber.h"
 
 #include <algorithm>
 #include <utility>

@@ -3,12 +3,12 @@
 #include <octafront/split.h>
 
 #include "base/core/disjoint_sets.h"
+#include "base/core/renumber.h"
 #include "base/core/wording.h"
-#include "base/labels/joined.h"
 #include "base/mesh/complex.h"
 #include "base/mesh/complex_patches.h"
 #include "base/mesh/edge_table.h"
-#include "base/mesh/renumber.h"
+#include "base/mesh/joined.h"
 #include "base/places/places.h"
 #include "pipeline/stages/contact_choice.h"
 #include "pipeline/stages/finish.h"

@@ -5,8 +5,8 @@
 #include <octafront/validity.h>
 
 #include "base/core/flat_map.h"
-#include "base/labels/labels.h"
-#include "base/mesh/renumber.h"
+#include "base/core/renumber.h"
+#include "base/mesh/labels.h"
 #include "improve/curved/curved.h"
 #include "improve/schedule/kept_labels.h"
 #include "improve/schedule/schedule.h"

@@ -5,7 +5,7 @@
 
 #include <octafront/surface_mesh.h>
 
-#include "layers/growth/with_layers.h"
+#include "layers/with_layers.h"
 #include "pipeline/stages/run.h"
 #include "surface/remeshing/remesh.h"
 

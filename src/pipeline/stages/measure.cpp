@@ -3,6 +3,7 @@
 #include <octafront/tet_mesh.h>
 
 #include "base/core/parallel.h"
+#include "base/core/random.h"
 #include "base/core/utf8.h"
 #include "base/mesh/quality_sum.h"
 #include "base/shared/packing.h"
@@ -10,7 +11,10 @@
 #include "improve/curved/curved.h"
 
 #include <algorithm>
+#include <array>
 #include <cstring>
+#include <type_traits>
+#include <utility>
 
 #ifdef _WIN32
 #include "base/core/files_of_windows.h"
@@ -28,14 +32,32 @@ std::uint64_t edge_key(VertexIndex a, VertexIndex b) {
   return (std::uint64_t{std::min(a, b)} << 32) | std::max(a, b);
 }
 
-SizeSummary summarize(std::vector<std::uint64_t>& keys, const std::vector<Vec3>& points, const SizeField& sizes) {
+using EdgeKeys = RawVector<std::uint64_t>;
+
+/// The edges of rows first, first + step ... as keys; `add` gives those of a row to a list.
+template <class Add>
+EdgeKeys keys_of_edges(std::size_t rows, const Add& add) {
+  constexpr std::size_t kRows = 4096;
+  return parallel_collect<std::uint64_t, EdgeKeys>(
+      rows, kRows, [&](std::size_t begin, std::size_t end, std::vector<std::uint64_t>& keys) {
+        for (std::size_t row = begin; row < end; ++row) add(row, keys);
+      });
+}
+
+EdgeKeys each_once(EdgeKeys sorted) {
+  return keys_of_edges(sorted.size(), [&](std::size_t i, std::vector<std::uint64_t>& once) {
+    if (i == 0 || sorted[i] != sorted[i - 1]) once.push_back(sorted[i]);
+  });
+}
+
+SizeSummary summarize(EdgeKeys keys, const std::vector<Vec3>& points, const SizeField& sizes) {
   constexpr double kShortest = 0.7, kLongest = 1.4;  // the band in which users call a length "as asked"
   parallel_sort(keys);
-  keys.erase(std::unique(keys.begin(), keys.end()), keys.end());
+  keys = each_once(std::move(keys));
   SizeSummary summary;
   summary.edges = keys.size();
   if (keys.empty()) return summary;
-  std::vector<double> ratios(keys.size());
+  RawVector<double> ratios(keys.size());
   parallel_for(keys.size(), [&](std::size_t i) {
     const Vec3 a = points[keys[i] >> 32], b = points[keys[i] & 0xffffffffu];
     ratios[i] = distance(a, b) / sizes.at((a + b) * 0.5);
@@ -51,41 +73,86 @@ SizeSummary summarize(std::vector<std::uint64_t>& keys, const std::vector<Vec3>&
   return summary;
 }
 
-class Fnv {
+/// The hash of an item, of which `place` is the number: its bytes, eight at a time, mixed one behind the other.
+template <class Item>
+std::uint64_t hash_of_item(const Item& item, std::uint64_t place) {
+  static_assert(std::has_unique_object_representations_v<Item> || std::is_same_v<Item, Vec3>);
+  std::array<std::uint64_t, (sizeof(Item) + 7) / 8> words{};
+  std::memcpy(words.data(), &item, sizeof(Item));
+  std::uint64_t hash = place;
+  for (const std::uint64_t word : words) hash = mixed_bits(hash ^ word);
+  return hash;
+}
+
+/// What all items of some arrays add up to, each hashed with its place: in any order, by any number of threads and
+/// ranks, the same sum.
+class MeshHash {
  public:
-  template <class T>
-  void add(const T& value) {
-    unsigned char bytes[sizeof(T)];
-    std::memcpy(bytes, &value, sizeof(T));
-    for (const unsigned char byte : bytes) hash_ = (hash_ ^ byte) * 0x100000001b3ull;
+  explicit MeshHash(const Comm& comm) : comm_(comm) {}
+
+  template <class Item>
+  void add(const std::vector<Item>& items) {
+    add_sum(items.size(), sum_of(items, 0));
+  }
+  /// Of items that the ranks hold in shares.
+  template <class Item>
+  void add_shares(const std::vector<Item>& items) {
+    std::uint64_t before = 0, all = 0, sum = 0;
+    const std::vector<std::uint64_t> counts = gathered_lists(comm_, std::vector<std::uint64_t>{items.size()}, "hash");
+    for (std::size_t rank = 0; rank < counts.size(); ++rank) {
+      if (rank < static_cast<std::size_t>(comm_.rank())) before += counts[rank];
+      all += counts[rank];
+    }
+    for (const std::uint64_t of_rank : gathered_lists(comm_, std::vector<std::uint64_t>{sum_of(items, before)}, "hash"))
+      sum += of_rank;
+    add_sum(all, sum);
   }
   std::uint64_t value() const { return hash_; }
 
  private:
-  std::uint64_t hash_ = 0xcbf29ce484222325ull;
+  /// `before`: how many there are before the first of these.
+  template <class Item>
+  static std::uint64_t sum_of(const std::vector<Item>& items, std::uint64_t before) {
+    return parallel_sum(items.size(), [&](std::size_t begin, std::size_t end) {
+      std::uint64_t sum = 0;
+      for (std::size_t i = begin; i < end; ++i) sum += hash_of_item(items[i], before + i);
+      return sum;
+    });
+  }
+  void add_sum(std::uint64_t items, std::uint64_t sum) { hash_ = mixed_bits(mixed_bits(hash_ ^ items) ^ sum); }
+
+  const Comm& comm_;
+  std::uint64_t hash_ = 0;
 };
 
 }  // namespace
 
 SizeSummary summarize_surface_edges(const std::vector<Vec3>& points, const std::vector<Triangle>& triangles,
                                     const SizeField& sizes) {
-  std::vector<std::uint64_t> keys;
-  keys.reserve(triangles.size() * 3);
-  for (const auto& [a, b, c] : triangles) keys.insert(keys.end(), {edge_key(a, b), edge_key(b, c), edge_key(c, a)});
-  return summarize(keys, points, sizes);
+  EdgeKeys keys = keys_of_edges(triangles.size(), [&](std::size_t t, std::vector<std::uint64_t>& found) {
+    const auto& [a, b, c] = triangles[t];
+    found.insert(found.end(), {edge_key(a, b), edge_key(b, c), edge_key(c, a)});
+  });
+  return summarize(std::move(keys), points, sizes);
 }
 
 SizeSummary summarize_volume_edges(const TetMesh& mesh, const SizeField& sizes, const Comm& comm) {
-  std::vector<std::uint64_t> keys;
   // Sorting every edge of a large mesh would cost a tenth of making it: an evenly spread part of the tets gives the
   // same shares to a third digit.
   constexpr std::size_t kSample = 100'000;
   const TetCounts counts = count_tets(mesh, comm);
   const std::size_t step = std::max<std::size_t>(1, counts.all / kSample);
-  for (std::size_t t = (step - counts.before % step) % step; t < mesh.tets.size(); t += step)
-    for (const auto& [i, j] : kTetEdges) keys.push_back(edge_key(mesh.tets[t][i], mesh.tets[t][j]));
-  keys = gathered_lists(comm, keys, "edges");
-  return summarize(keys, mesh.points, sizes);
+  const std::size_t first = (step - counts.before % step) % step;
+  const std::size_t looked_at = mesh.tets.size() > first ? (mesh.tets.size() - first + step - 1) / step : 0;
+  EdgeKeys keys = keys_of_edges(looked_at, [&](std::size_t k, std::vector<std::uint64_t>& found) {
+    const Tet& tet = mesh.tets[first + k * step];
+    for (const auto& [i, j] : kTetEdges) found.push_back(edge_key(tet[i], tet[j]));
+  });
+  if (!comm.alone()) {
+    const auto all = gathered_lists(comm, std::vector<std::uint64_t>(keys.begin(), keys.end()), "edges");
+    keys.assign(all.begin(), all.end());
+  }
+  return summarize(std::move(keys), mesh.points, sizes);
 }
 
 void describe_sizes(const TetMesh& mesh, const SizeField& sizes, Report& report, const Comm& comm) {
@@ -146,39 +213,17 @@ void describe_regions(const TetMesh& mesh, Report& report, const Comm& comm) {
   }
 }
 
-namespace {
-
-/// add(hash) of one rank after the other.
-template <class Add>
-void add_by_ranks(Fnv& hash, const Comm& comm, const Add& add) {
-  for (int rank = 0; rank < comm.size(); ++rank) {
-    if (rank == comm.rank()) add(hash);
-    hash = gathered_lists(comm, std::vector<Fnv>{hash}, "hash")[static_cast<std::size_t>(rank)];
-  }
-}
-
-}  // namespace
-
 std::uint64_t mesh_hash(const TetMesh& mesh, const Comm& comm) {
-  Fnv hash;
-  for (const Vec3& p : mesh.points)
-    for (int axis = 0; axis < 3; ++axis) hash.add(p[axis]);
-  add_by_ranks(hash, comm, [&](Fnv& h) {
-    for (const Tet& tet : mesh.tets)
-      for (const VertexIndex v : tet) h.add(v);
-  });
-  for (const Triangle& face : mesh.boundary)
-    for (const VertexIndex v : face) hash.add(v);
-  add_by_ranks(hash, comm, [&](Fnv& h) {
-    for (const std::uint32_t region : mesh.region) h.add(region);
-  });
-  for (const std::uint32_t patch : mesh.patch) hash.add(patch);
-  for (const auto& mids : mesh.mid_nodes)
-    for (const VertexIndex v : mids) hash.add(v);
-  for (const VertexIndex v : mesh.high_nodes) hash.add(v);
-  for (const Triangle& face : mesh.interfaces)
-    for (const VertexIndex v : face) hash.add(v);
-  for (const std::uint32_t patch : mesh.interface_patch) hash.add(patch);
+  MeshHash hash(comm);
+  hash.add(mesh.points);
+  hash.add_shares(mesh.tets);
+  hash.add(mesh.boundary);
+  hash.add_shares(mesh.region);
+  hash.add(mesh.patch);
+  hash.add(mesh.mid_nodes);
+  hash.add(mesh.high_nodes);
+  hash.add(mesh.interfaces);
+  hash.add(mesh.interface_patch);
   return hash.value();
 }
 

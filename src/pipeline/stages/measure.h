@@ -21,8 +21,8 @@ void describe_sizes(const TetMesh& mesh, const SizeField& sizes, Report& report,
 void describe_quality(const TetMesh& mesh, Report& report, const Comm& comm = Comm(nullptr));
 void describe_regions(const TetMesh& mesh, Report& report, const Comm& comm = Comm(nullptr));
 
-/// A fingerprint of coordinates (bits), tets, regions, boundary, interfaces, patches and mid-side nodes: equal meshes,
-/// equal hash (FNV-1a, 64 bits).
+/// A fingerprint of coordinates (bits), tets, regions, boundary, interfaces, patches and mid-side nodes, 64 bits: equal
+/// meshes, equal hash. A sum over the items, each mixed with its place, so that no number of threads or ranks is seen.
 std::uint64_t mesh_hash(const TetMesh& mesh, const Comm& comm = Comm(nullptr));
 
 /// Largest resident memory of this process so far.

@@ -3,8 +3,8 @@
 #include <octafront/error.h>
 
 #include "base/core/elementary.h"
-#include "base/labels/labels.h"
-#include "layers/through/through.h"
+#include "base/mesh/labels.h"
+#include "layers/through.h"
 #include "pipeline/stages/methods.h"
 #include "pipeline/stages/stages.h"
 #include "sizing/field/expected_tets.h"

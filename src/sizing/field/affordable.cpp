@@ -4,8 +4,8 @@
 #include <octafront/surface_mesh.h>
 
 #include "base/core/elementary.h"
+#include "base/core/index_range.h"
 #include "base/geometry/measures.h"
-#include "base/mesh/index_range.h"
 
 #include <algorithm>
 #include <cmath>

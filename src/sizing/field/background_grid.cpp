@@ -29,16 +29,21 @@ struct Sample {
   double h, reach, area;
 };
 
-std::vector<Sample> sorted_samples(const RootCube& root, const std::vector<SizeSample>& samples) {
-  std::vector<std::pair<OctreeKey, std::uint32_t>> order(samples.size());
+RawVector<Sample> sorted_samples(const RootCube& root, std::span<const SizeSample> samples) {
+  struct Place {
+    OctreeKey cell;
+    std::uint32_t sample;
+    auto operator<=>(const Place&) const = default;
+  };
+  RawVector<Place> order(samples.size());
   parallel_for(samples.size(), [&](std::size_t i) {
     order[i] = {root.cell(samples[i].p), static_cast<std::uint32_t>(i)};
   });
   parallel_sort(order);
-  std::vector<Sample> sorted(samples.size());
+  RawVector<Sample> sorted(samples.size());
   parallel_for(order.size(), [&](std::size_t k) {
-    const SizeSample& s = samples[order[k].second];
-    sorted[k] = {order[k].first,  (s.p - root.lo) / root.side, s.n,
+    const SizeSample& s = samples[order[k].sample];
+    sorted[k] = {order[k].cell,   (s.p - root.lo) / root.side, s.n,
                  s.h / root.side, s.reach / root.side,         s.area / (root.side * root.side)};
   });
   return sorted;
@@ -50,7 +55,7 @@ double side_of(OctreeKey cell) {
 
 class GridMaker {
  public:
-  GridMaker(const RootCube& root, const std::vector<SizeSample>& samples, const GridRules& rules,
+  GridMaker(const RootCube& root, std::span<const SizeSample> samples, const GridRules& rules,
             const RunContext& context)
       : root_(root),
         samples_(sorted_samples(root, samples)),
@@ -59,7 +64,7 @@ class GridMaker {
         ceiling_(std::min(rules.ceiling, root.side) / root.side) {}
 
   std::shared_ptr<OctreeField> run() {
-    divide_by_samples(OctreeKey::root(), samples_);
+    divide_by_samples();
     make_field();
     if (rules_.interior_below_surface && !samples_.empty()) {
       ceiling_ = std::min(ceiling_, largest_at_samples());
@@ -74,60 +79,142 @@ class GridMaker {
   }
 
  private:
-  /// `inside`: the samples in the cell.
-  void divide_by_samples(OctreeKey cell, std::span<const Sample> inside) {
-    if (inside.empty() || cell.level() == OctreeKey::kMaxLevel) return;
+  /// The samples in a cell, and the least and greatest size at them.
+  struct Inside {
+    OctreeKey cell;
+    std::span<const Sample> samples;
     double low = kInfinity, high = 0;
-    for (const Sample& s : inside) {
-      low = std::min(low, s.h);
-      high = std::max(high, s.h);
+
+    Inside(OctreeKey in, std::span<const Sample> those) : cell(in), samples(those) {
+      for (const Sample& s : samples) low = std::min(low, s.h), high = std::max(high, s.h);
     }
-    if (side_of(cell) <= rules_.leaf_per_size * low) return;
-    if (!rules_.resolve_surface && high <= kPlainRatio * low && cell.level() >= rules_.plain_level) return;
+    /// What the cells inside it hold together.
+    Inside(OctreeKey in, std::span<const Inside> parts) : cell(in) {
+      for (const Inside& part : parts) low = std::min(low, part.low), high = std::max(high, part.high);
+    }
+  };
+
+  bool is_divided(const Inside& inside) const {
+    if (inside.high == 0 || inside.cell.level() == OctreeKey::kMaxLevel) return false;
+    if (side_of(inside.cell) <= rules_.leaf_per_size * inside.low) return false;
+    return rules_.resolve_surface || inside.high > kPlainRatio * inside.low || inside.cell.level() < rules_.plain_level;
+  }
+
+  /// What lies in one cell of kTopLevel is a thread's own. Where a cell is not divided none inside it would be.
+  void divide_by_samples() {
+    const std::vector<Inside> tops = samples_in_tops();
+    divide_above(OctreeKey::root(), tops);
+    const auto divided = parallel_collect<OctreeKey>(
+        tops.size(), 1, [&](std::size_t begin, std::size_t end, std::vector<OctreeKey>& cells) {
+          for (std::size_t i = begin; i < end; ++i) divide_below(tops[i], cells);
+        });
+    cells_.divide(divided);
+  }
+
+  static constexpr int kTopLevel = 4;
+
+  std::vector<Inside> samples_in_tops() const {
+    std::vector<std::span<const Sample>> parts;
+    for (std::span<const Sample> rest = samples_; !rest.empty(); rest = rest.subspan(parts.back().size()))
+      parts.push_back(samples_within(rest.front().cell.ancestor(kTopLevel), rest));
+    std::vector<Inside> tops(parts.size(), Inside({}, std::span<const Sample>{}));
+    parallel_for(
+        parts.size(),
+        [&](std::size_t i) {
+          tops[i] = {parts[i].front().cell.ancestor(kTopLevel), parts[i]};
+        },
+        Split::kSingly);
+    return tops;
+  }
+
+  /// Those that begin with the first in a cell, as far as they lie in it.
+  static std::span<const Sample> samples_within(OctreeKey cell, std::span<const Sample> from) {
+    const auto end = std::partition_point(from.begin(), from.end(),
+                                          [&](const Sample& s) { return s.cell.id() <= cell.range_max(); });
+    return {from.begin(), end};
+  }
+
+  void divide_above(OctreeKey cell, std::span<const Inside> tops) {
+    if (cell.level() == kTopLevel || !is_divided(Inside(cell, tops))) return;
     cells_.divide(cell);
     for (int i = 0; i < 8; ++i) {
       const OctreeKey child = cell.child(i);
-      const auto end = std::partition_point(inside.begin(), inside.end(),
-                                            [&](const Sample& s) { return s.cell.id() <= child.range_max(); });
-      divide_by_samples(child, {inside.begin(), end});
-      inside = {end, inside.end()};
+      const auto end = std::partition_point(tops.begin(), tops.end(),
+                                            [&](const Inside& t) { return t.cell.id() <= child.range_max(); });
+      divide_above(child, {tops.begin(), end});
+      tops = {end, tops.end()};
+    }
+  }
+
+  void divide_below(const Inside& inside, std::vector<OctreeKey>& divided) const {
+    if (!is_divided(inside)) return;
+    divided.push_back(inside.cell);
+    std::span<const Sample> rest = inside.samples;
+    for (int i = 0; i < 8; ++i) {
+      const OctreeKey child = inside.cell.child(i);
+      const std::span<const Sample> part = samples_within(child, rest);
+      divide_below(Inside(child, part), divided);
+      rest = rest.subspan(part.size());
     }
   }
 
   /// What the samples in a leaf allow at its corners. A sample speaks for its tangent plane: its size holds along the
   /// normal within the leaf, so that a surface of one size has that size, and rises at the gradation along the plane.
-  std::vector<double> corner_caps() const {
-    std::vector<double> caps(corners_.size(), kInfinity);
-    for_each_cap([&](std::uint32_t corner, double cap, const Sample&) { SharedValue(caps[corner]).lower_to(cap); });
+  RawVector<double> corner_caps() const {
+    RawVector<double> caps = parallel_filled(corners_.size(), kInfinity);
+    for_each_cap([&](std::uint32_t corner, double cap, double) { SharedValue(caps[corner]).lower_to(cap); });
     return caps;
   }
 
   /// The sizes of the samples that these caps come from.
-  std::vector<double> sizes_behind(const std::vector<double>& caps) const {
-    std::vector<double> sizes(corners_.size(), kInfinity);
-    for_each_cap([&](std::uint32_t corner, double cap, const Sample& s) {
-      if (cap == caps[corner]) SharedValue(sizes[corner]).lower_to(s.h);
+  RawVector<double> sizes_behind(const RawVector<double>& caps) const {
+    RawVector<double> sizes = parallel_filled(corners_.size(), kInfinity);
+    for_each_cap([&](std::uint32_t corner, double cap, double h) {
+      if (cap == caps[corner]) SharedValue(sizes[corner]).lower_to(h);
     });
     return sizes;
   }
 
-  /// Calls visit(corner, cap, sample) for each free corner that a leaf's values depend on and each sample in it.
+  /// Calls visit(corner, cap, size) for each free corner that a leaf's values depend on, with the lowest cap by a
+  /// sample in the leaf, and the least size of those that have it.
   template <class Visit>
   void for_each_cap(const Visit& visit) const {
-    const auto lay_on = [&](std::uint32_t corner, const Sample& s) {
-      const auto& u = corners_.position[corner];
-      const Vec3 d = Vec3{double(u[0]), double(u[1]), double(u[2])} / OctreeKey::kSide - s.p;
+    parallel_ranges(tree_.size(), Split::kAdaptive, [&](std::size_t begin, std::size_t end) {
+      std::vector<std::uint32_t> corners;
+      for (std::size_t l = begin; l < end; ++l) {
+        const std::span<const Sample> samples = samples_in(l);
+        if (samples.empty()) continue;
+        find_free_corners(l, corners);
+        for (const std::uint32_t corner : corners) {
+          const auto [cap, h] = lowest_cap(corner, samples);
+          visit(corner, cap, h);
+        }
+      }
+    });
+  }
+
+  void find_free_corners(std::size_t leaf, std::vector<std::uint32_t>& free) const {
+    free.clear();
+    const auto add = [&](std::uint32_t corner) {
+      if (std::ranges::find(free, corner) == free.end()) free.push_back(corner);
+    };
+    for (const std::uint32_t corner : corners_.of_leaf[leaf]) {
+      if (!corners_.hangs(corner)) add(corner);
+      for (const auto& share : corners_.shares_of(corner)) add(share.corner);
+    }
+  }
+
+  std::pair<double, double> lowest_cap(std::uint32_t corner, std::span<const Sample> samples) const {
+    const auto& u = corners_.position[corner];
+    const Vec3 at = Vec3{double(u[0]), double(u[1]), double(u[2])} / OctreeKey::kSide;
+    std::pair<double, double> lowest{kInfinity, kInfinity};
+    for (const Sample& s : samples) {
+      const Vec3 d = at - s.p;
       const double along = dot(d, s.n);
       const double offset = std::sqrt(std::max(0.0, squared_length(d) - along * along));
-      visit(corner, s.h + rules_.gradation * std::max(0.0, offset - s.reach), s);
-    };
-    parallel_for(tree_.size(), [&](std::size_t l) {
-      for (const Sample& s : samples_in(l))
-        for (const std::uint32_t corner : corners_.of_leaf[l]) {
-          if (!corners_.hangs(corner)) lay_on(corner, s);
-          for (const auto& share : corners_.shares_of(corner)) lay_on(share.corner, s);
-        }
-    });
+      lowest = std::min(lowest, {s.h + rules_.gradation * std::max(0.0, offset - s.reach), s.h});
+    }
+    return lowest;
   }
 
   std::span<const Sample> samples_in(std::size_t leaf) const {
@@ -136,13 +223,19 @@ class GridMaker {
 
   /// Samples and leaves are in the same order.
   void find_samples_of_leaves() {
-    first_sample_.assign(tree_.size() + 1, 0);
-    std::size_t next = 0;
-    for (std::size_t l = 0; l < tree_.size(); ++l) {
-      for (; next < samples_.size() && samples_[next].cell.id() <= tree_.leaf(l).range_max();) ++next;
-      first_sample_[l + 1] = next;
-    }
+    first_sample_.resize(tree_.size() + 1);
+    parallel_ranges(tree_.size(), Split::kAdaptive, [&](std::size_t begin, std::size_t end) {
+      std::size_t next = begin == 0 ? 0 : samples_up_to(tree_.leaf(begin - 1));
+      for (std::size_t l = begin; l < end; ++l) {
+        first_sample_[l] = next;
+        while (next < samples_.size() && samples_[next].cell.id() <= tree_.leaf(l).range_max()) ++next;
+      }
+    });
+    first_sample_[tree_.size()] = samples_.size();
   }
+
+  /// How many lie in a leaf and before it.
+  std::size_t samples_up_to(OctreeKey leaf) const { return samples_within(leaf, samples_).size(); }
 
   void make_field() {
     cells_.close();
@@ -150,8 +243,8 @@ class GridMaker {
     find_samples_of_leaves();
     corners_ = octree_corners(tree_);
     context_.check();
-    std::vector<double> caps = corner_caps();
-    std::vector<double> sources = rules_.keep_sources ? sizes_behind(caps) : caps;
+    RawVector<double> caps = corner_caps();
+    RawVector<double> sources = rules_.keep_sources ? sizes_behind(caps) : parallel_copy(caps);
     graded_ =
         graded_corners(tree_, corners_, {std::move(caps), std::move(sources)}, rules_.gradation, ceiling_, context_);
     fill_field();
@@ -159,7 +252,7 @@ class GridMaker {
 
   /// Values above the ceiling are cut off at the free corners; hanging ones follow.
   void fill_field() {
-    std::vector<double>&value = graded_.value, &source = graded_.source;
+    RawVector<double>&value = graded_.value, &source = graded_.source;
     parallel_for(corners_.size(), [&](std::size_t c) {
       if (value[c] > ceiling_) value[c] = source[c] = ceiling_;
     });
@@ -182,71 +275,76 @@ class GridMaker {
 
   /// The largest size that is wanted on the surface and that gradation allows there.
   double largest_at_samples() const {
-    std::vector<double> largest(tree_.size(), 0);
-    parallel_for(tree_.size(), [&](std::size_t l) {
+    return parallel_max(tree_.size(), 0.0, [&](std::size_t l) {
       const double scale = 1u << tree_.leaf(l).level();
       const auto corner = tree_.leaf(l).corner();
       const auto local = [&](double x, int axis) {
         return std::clamp((x - double(corner[axis]) / OctreeKey::kSide) * scale, 0.0, 1.0);
       };
+      double largest = 0;
       for (const Sample& s : samples_in(l)) {
         const double h = trilinear(field_->h[l], local(s.p.x, 0), local(s.p.y, 1), local(s.p.z, 2));
-        largest[l] = std::max(largest[l], std::min(h, s.h));
+        largest = std::max(largest, std::min(h, s.h));
       }
+      return largest;
     });
-    return *std::ranges::max_element(largest);
   }
 
   /// Leaves that are too large for the graded sizes in them are divided. True if there are any.
   bool divide_by_field() {
-    const std::vector<double> inside = inside_fractions_of_samples();
-    bool any = false;
-    for (std::size_t l = 0; l < tree_.size(); ++l) {
-      const bool has_samples = !samples_in(l).empty();
-      if (inside[l] == 0 && !has_samples) continue;
-      const double factor = rules_.leaf_per_size * (has_samples ? 1 : 2);
-      any = divide_leaf(tree_.leaf(l), field_->h[l], factor) || any;
-    }
-    return any;
+    const RawVector<double> inside = inside_fractions_of_samples();
+    const auto divided = parallel_collect<OctreeKey>(
+        tree_.size(), kLeavesAtOnce, [&](std::size_t begin, std::size_t end, std::vector<OctreeKey>& cells) {
+          for (std::size_t l = begin; l < end; ++l) {
+            const bool has_samples = !samples_in(l).empty();
+            if (inside[l] == 0 && !has_samples) continue;
+            divide_leaf(tree_.leaf(l), field_->h[l], rules_.leaf_per_size * (has_samples ? 1 : 2), cells);
+          }
+        });
+    cells_.divide(divided);
+    return !divided.empty();
   }
 
-  std::vector<double> inside_fractions_of_samples() const {
-    std::vector<SurfacePiece> pieces;
-    for (std::uint32_t l = 0; l < tree_.size(); ++l)
-      for (const Sample& s : samples_in(l))
-        if (s.area > 0) pieces.push_back({s.p, s.n * s.area, l});
-    if (pieces.empty()) return std::vector<double>(tree_.size(), 1.0);
+  static constexpr std::size_t kLeavesAtOnce = 512;
+
+  RawVector<double> inside_fractions_of_samples() const {
+    const auto pieces = parallel_collect<SurfacePiece, RawVector<SurfacePiece>>(
+        tree_.size(), kLeavesAtOnce, [&](std::size_t begin, std::size_t end, std::vector<SurfacePiece>& found) {
+          for (std::size_t l = begin; l < end; ++l)
+            for (const Sample& s : samples_in(l))
+              if (s.area > 0) found.push_back({s.p, s.n * s.area, static_cast<std::uint32_t>(l)});
+        });
+    if (pieces.empty()) return parallel_filled(tree_.size(), 1.0);
     return inside_fractions(RootCube{}, tree_, pieces);
   }
 
-  bool divide_leaf(OctreeKey cell, const std::array<double, 8>& h, double factor) {
+  void divide_leaf(OctreeKey cell, const std::array<double, 8>& h, double factor,
+                   std::vector<OctreeKey>& divided) const {
     double low = kInfinity, high = 0;
     for (const double v : h) {
       low = std::min({low, v, ceiling_});
       high = std::max(high, std::min(v, ceiling_));
     }
-    if (side_of(cell) <= factor * low || high <= kPlainRatio * low || cell.level() == OctreeKey::kMaxLevel)
-      return false;
-    cells_.divide(cell);
+    if (side_of(cell) <= factor * low || high <= kPlainRatio * low || cell.level() == OctreeKey::kMaxLevel) return;
+    divided.push_back(cell);
     for (int i = 0; i < 8; ++i) {
       std::array<double, 8> part;
       for (int k = 0; k < 8; ++k) {
         const auto at = [&](int axis) { return 0.5 * ((i >> axis & 1) + (k >> axis & 1)); };
         part[k] = trilinear(h, at(0), at(1), at(2));
       }
-      divide_leaf(cell.child(i), part, factor);
+      divide_leaf(cell.child(i), part, factor, divided);
     }
-    return true;
   }
 
   const RootCube& root_;
-  std::vector<Sample> samples_;
+  RawVector<Sample> samples_;
   const GridRules& rules_;
   const RunContext& context_;
   double ceiling_;
   DividedCells cells_;
   Octree tree_;
-  std::vector<std::size_t> first_sample_;  ///< per leaf, and one more
+  RawVector<std::size_t> first_sample_;  ///< per leaf, and one more
   OctreeCorners corners_;
   GradedCorners graded_;
   std::shared_ptr<OctreeField> field_;
@@ -258,7 +356,7 @@ RootCube root_around(const SurfaceMesh& surface) {
   return RootCube::around(bounding_box(surface.points), kRootMargin);
 }
 
-std::shared_ptr<OctreeField> make_background_grid(const RootCube& root, const std::vector<SizeSample>& samples,
+std::shared_ptr<OctreeField> make_background_grid(const RootCube& root, std::span<const SizeSample> samples,
                                                   const GridRules& rules, const RunContext& context) {
   return GridMaker(root, samples, rules, context).run();
 }

@@ -5,7 +5,7 @@
 #include "sizing/field/octree_field.h"
 
 #include <memory>
-#include <vector>
+#include <span>
 
 namespace octafront {
 
@@ -40,7 +40,7 @@ struct GridRules {
 
 /// Leaves on the surface follow the samples, those inside the graded field; 2:1 balanced. Samples are not kept. What is
 /// inside follows from the samples' normals and areas.
-std::shared_ptr<OctreeField> make_background_grid(const RootCube& root, const std::vector<SizeSample>& samples,
+std::shared_ptr<OctreeField> make_background_grid(const RootCube& root, std::span<const SizeSample> samples,
                                                   const GridRules& rules, const RunContext& context);
 
 }  // namespace octafront

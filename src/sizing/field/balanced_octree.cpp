@@ -15,11 +15,22 @@ namespace octafront {
 
 namespace {
 
-constexpr std::size_t kCellsAtOnce = 8192;
+constexpr std::size_t kCellsAtOnce = 1024;
+/// What lies in a cell of this level is a thread's own: there are some hundred of them where there is any surface.
+constexpr int kTopLevel = 4;
 
 void sort_unique(std::vector<OctreeKey>& cells) {
-  parallel_sort(cells);
+  std::sort(cells.begin(), cells.end());
   cells.erase(std::unique(cells.begin(), cells.end()), cells.end());
+}
+
+RawVector<OctreeKey> sorted_unique(RawVector<OctreeKey> cells) {
+  parallel_sort(cells);
+  return parallel_collect<OctreeKey, RawVector<OctreeKey>>(
+      cells.size(), kCellsAtOnce, [&](std::size_t begin, std::size_t end, std::vector<OctreeKey>& once) {
+        for (std::size_t i = begin; i < end; ++i)
+          if (i == 0 || cells[i] != cells[i - 1]) once.push_back(cells[i]);
+      });
 }
 
 void add_parents_around(OctreeKey cell, std::vector<OctreeKey>& parents) {
@@ -36,36 +47,55 @@ void add_parents_around(OctreeKey cell, std::vector<OctreeKey>& parents) {
 
 void DividedCells::close() {
   for (int l = OctreeKey::kMaxLevel; l > 0; --l) {
-    sort_unique(levels_[l]);
-    const std::vector<OctreeKey>& cells = levels_[l];
+    if (levels_[l].empty()) continue;
+    const Level& cells = levels_[l] = sorted_unique(std::move(levels_[l]));
     // Siblings share most of their parents' neighbours: few are left of those of a range.
-    const auto parents = parallel_collect<OctreeKey>(
+    const auto parents = parallel_collect<OctreeKey, Level>(
         cells.size(), kCellsAtOnce, [&](std::size_t begin, std::size_t end, std::vector<OctreeKey>& found) {
           for (std::size_t i = begin; i < end; ++i) add_parents_around(cells[i], found);
           sort_unique(found);
         });
     levels_[l - 1].insert(levels_[l - 1].end(), parents.begin(), parents.end());
   }
-  sort_unique(levels_[0]);
+  levels_[0] = sorted_unique(std::move(levels_[0]));
 }
 
-Octree DividedCells::tree() const {
-  std::vector<OctreeKey> leaves;
-  std::array<std::size_t, OctreeKey::kMaxLevel + 1> next{};
-  // Depth first; on each level the cells come in the order of the curve, as they are sorted in levels_.
-  std::vector<OctreeKey> stack{OctreeKey::root()};
+// On each level the cells come in the order of the curve, as they are sorted in levels_.
+void DividedCells::leaves_below(OctreeKey top, std::vector<OctreeKey>& leaves) const {
+  std::array<Level::const_iterator, OctreeKey::kMaxLevel + 1> next;
+  for (int l = 0; l <= OctreeKey::kMaxLevel; ++l)
+    next[l] = std::lower_bound(levels_[l].begin(), levels_[l].end(), OctreeKey::from_id(top.range_min()));
+  std::vector<OctreeKey> stack{top};
   while (!stack.empty()) {
     const OctreeKey cell = stack.back();
     stack.pop_back();
     const int l = cell.level();
-    if (next[l] < levels_[l].size() && levels_[l][next[l]] == cell && l < OctreeKey::kMaxLevel) {
+    if (next[l] != levels_[l].end() && *next[l] == cell && l < OctreeKey::kMaxLevel) {
       ++next[l];
       for (int i = 7; i >= 0; --i) stack.push_back(cell.child(i));
     } else {
       leaves.push_back(cell);
     }
   }
-  return Octree(std::move(leaves));
+}
+
+Octree DividedCells::tree() const {
+  // The leaves if nothing below kTopLevel were divided.
+  std::vector<OctreeKey> tops{OctreeKey::root()};
+  for (int l = 0; l < kTopLevel; ++l) {
+    std::vector<OctreeKey> next;
+    for (const OctreeKey cell : tops) {
+      if (cell.level() < l || !std::binary_search(levels_[l].begin(), levels_[l].end(), cell))
+        next.push_back(cell);
+      else
+        for (int i = 0; i < 8; ++i) next.push_back(cell.child(i));
+    }
+    tops.swap(next);
+  }
+  return Octree(parallel_collect<OctreeKey, Level>(
+      tops.size(), 1, [&](std::size_t begin, std::size_t end, std::vector<OctreeKey>& leaves) {
+        for (std::size_t i = begin; i < end; ++i) leaves_below(tops[i], leaves);
+      }));
 }
 
 DividedCells divided_cells(const Octree& tree, const std::function<bool(std::size_t)>& stays) {

@@ -5,6 +5,7 @@
 #include "sizing/field/octree_corners.h"
 
 #include <algorithm>
+#include <utility>
 
 namespace octafront {
 
@@ -65,23 +66,24 @@ SizeField scaled(const SizeField& sizes, double factor, const RunContext& contex
   if (grid == nullptr)
     return SizeFunction::field([sizes, factor](Vec3 p) { return sizes.at(p) * factor; }, sizes.min_size() * factor,
                                sizes.max_size() * factor, SizeFunction::behind(sizes).gradation);
-  auto copy = std::make_shared<OctreeField>(*grid);
-  for (auto& leaf : copy->h) {
-    for (double& v : leaf) v *= factor;
-  }
-  copy->find_range();
+  auto copy =
+      std::make_shared<OctreeField>(with_sizes(*grid, [&](std::size_t l, int k) { return grid->h[l][k] * factor; }));
+  copy->source = parallel_copy(grid->source);
   if (factor > 1) grade_again(*copy, context);
   return SizeFunction::field(std::move(copy));
 }
 
 void grade_again(OctreeField& field, const RunContext& context) {
   const OctreeCorners corners = octree_corners(field.tree);
-  std::vector<double> caps(corners.size());
-  for (std::size_t l = 0; l < field.tree.size(); ++l)
-    for (int k = 0; k < 8; ++k) caps[corners.of_leaf[l][k]] = field.h[l][k];
+  RawVector<double> caps(corners.size());
+  parallel_for(corners.size(), [&](std::size_t c) {
+    const std::uint32_t last = corners.leaves[c].back();
+    caps[c] = field.h[last / 8][last % 8];
+  });
   field.find_range();
-  field.h =
-      corners.at_leaves(graded_corners(field.tree, corners, {caps, caps}, field.gradation, field.high, context).value);
+  GradedCorners both{parallel_copy(caps), std::move(caps)};
+  field.h = corners.at_leaves(
+      graded_corners(field.tree, corners, std::move(both), field.gradation, field.high, context).value);
   field.find_range();
 }
 

@@ -17,9 +17,14 @@
 #include "sizing/field/thin_walls.h"
 
 #include <algorithm>
+#include <array>
+#include <bit>
 #include <cmath>
+#include <cstdint>
 #include <map>
+#include <numbers>
 #include <optional>
+#include <span>
 #include <vector>
 
 namespace octafront {
@@ -45,8 +50,29 @@ constexpr double kWorthCounting = 0.05;
 double size_of_step(int step) {
   return elementary::exp2((step - kStepsBelow + 0.5) / kStepsPerOctave);
 }
+/// The logarithm of a normal h > 0 to base 2 but for 1e-7: of a mantissa between the roots of 1/2 and 2 by the series
+/// of log((1 + t) / (1 - t)).
+double rough_log2(double h) {
+  const auto bits = std::bit_cast<std::uint64_t>(h);
+  const auto exponent = static_cast<double>(static_cast<std::int64_t>(bits >> 52) - 1023);
+  const double m = std::bit_cast<double>((bits & 0x000f'ffff'ffff'ffffu) | 0x3ff0'0000'0000'0000u);
+  const bool is_upper = m > std::numbers::sqrt2;
+  const double t = ((is_upper ? 0.5 * m : m) - 1) / ((is_upper ? 0.5 * m : m) + 1), t2 = t * t;
+  const double log = 2 * std::numbers::log2e * t * (1 + t2 * (1.0 / 3 + t2 * (1.0 / 5 + t2 * (1.0 / 7))));
+  return exponent + (is_upper ? 1 : 0) + log;
+}
+
+/// Where a rough logarithm leaves no doubt it decides.
+double floor_of_log2(double h) {
+  constexpr double kInDoubt = 1e-4;
+  const double rough = rough_log2(h) * kStepsPerOctave, down = std::floor(rough);
+  if (h >= 0x1p-1000 && rough - down > kInDoubt && rough - down < 1 - kInDoubt) [[likely]]
+    return down;
+  return std::floor(elementary::log2(h) * kStepsPerOctave);
+}
+
 std::size_t step_of_size(double h) {
-  const auto step = static_cast<int>(std::floor(elementary::log2(h) * kStepsPerOctave));
+  const auto step = static_cast<int>(floor_of_log2(h));
   return static_cast<std::size_t>(std::clamp(step + kStepsBelow, 0, kSteps - 1));
 }
 
@@ -103,23 +129,30 @@ double elements_asked_inside(const Demand& demand) {
 /// surface, where the front meets the lattice, and give most of the volume cells of one size.
 double choose_cell(const Demand& demand) {
   const double asked = elements_asked_inside(demand);
+  struct Choice {
+    double cell = 0, cost = 0;
+  };
+  std::array<Choice, kStepsPerOctave + 1> choices;
+  parallel_for(
+      choices.size(),
+      [&](std::size_t i) {
+        const double octaves = (static_cast<double>(i) - kStepsPerOctave / 2) / kStepsPerOctave;
+        const double cell = demand.surface_size * elementary::exp2(octaves);
+        const double miss = asked > 0 ? std::abs(elementary::log(elements_inside(demand, cell) / asked)) : 0;
+        choices[i] = {cell,
+                      miss + kMissPerOctave * std::abs(octaves) + kMissPerMixed * (1 - largest_share(demand, cell))};
+      },
+      Split::kSingly);
   double best = demand.surface_size, least = HUGE_VAL;
-  for (int i = -kStepsPerOctave / 2; i <= kStepsPerOctave / 2; ++i) {
-    const double octaves = double(i) / kStepsPerOctave, cell = demand.surface_size * elementary::exp2(octaves);
-    const double miss = asked > 0 ? std::abs(elementary::log(elements_inside(demand, cell) / asked)) : 0;
-    const double cost = miss + kMissPerOctave * std::abs(octaves) + kMissPerMixed * (1 - largest_share(demand, cell));
-    if (cost < least) {
-      least = cost;
-      best = cell;
-    }
-  }
+  for (const Choice& choice : choices)
+    if (choice.cost < least) least = choice.cost, best = choice.cell;
   return best;
 }
 
 /// The surface in pieces by the leaves that they lie in, and the part of each leaf inside.
 struct DividedSurface {
-  std::vector<SurfacePiece> pieces;
-  std::vector<double> fraction;
+  RawVector<SurfacePiece> pieces;
+  RawVector<double> fraction;
 
   DividedSurface(const OctreeField& field, const SurfaceMesh& surface)
       : pieces(surface_pieces(field.root, field.tree, surface)),
@@ -127,16 +160,20 @@ struct DividedSurface {
 };
 
 /// The size at each piece, input units.
-std::vector<double> sizes_at(const std::vector<SurfacePiece>& pieces, const OctreeField& field) {
-  std::vector<double> sizes(pieces.size());
+RawVector<double> sizes_at(std::span<const SurfacePiece> pieces, const OctreeField& field) {
+  RawVector<double> sizes(pieces.size());
   parallel_for(pieces.size(), [&](std::size_t i) { sizes[i] = field.at(pieces[i].p, pieces[i].leaf); });
   return sizes;
 }
 
 /// In units of the root's side.
-double median_on_surface(const OctreeField& field, const std::vector<SurfacePiece>& pieces,
-                         const std::vector<double>& sizes) {
-  std::vector<std::pair<double, double>> counts(pieces.size());
+double median_on_surface(const OctreeField& field, std::span<const SurfacePiece> pieces,
+                         std::span<const double> sizes) {
+  struct Count {
+    double h, count;
+    auto operator<=>(const Count&) const = default;
+  };
+  RawVector<Count> counts(pieces.size());
   parallel_for(pieces.size(), [&](std::size_t i) {
     const double h = sizes[i] / field.root.side;
     counts[i] = {h, length(pieces[i].n) / (h * h)};
@@ -181,8 +218,8 @@ void add_demand(const OctreeField& field, std::size_t leaf, double fraction, Dem
   });
 }
 
-Demand demand_of(const OctreeField& field, const DividedSurface& surface, const std::vector<double>& sizes) {
-  const std::vector<double>& fraction = surface.fraction;
+Demand demand_of(const OctreeField& field, const DividedSurface& surface, std::span<const double> sizes) {
+  const RawVector<double>& fraction = surface.fraction;
   Demand demand = parallel_sum(field.tree.size(), [&](std::size_t begin, std::size_t end) {
     Demand part;
     for (std::size_t l = begin; l < end; ++l)
@@ -216,7 +253,7 @@ std::shared_ptr<const OctreeField> grid_of(const SizeField& sizes, const Surface
 }
 
 double elements_by_volume(const OctreeField& grid, const SurfaceMesh& surface, const DividedSurface& divided,
-                          const std::vector<double>& sizes) {
+                          std::span<const double> sizes) {
   if (grid.low == grid.high) {
     const double h = grid.min_size();
     return kTetsPerCube * std::abs(enclosed_volume(surface)) / (h * h * h);
@@ -227,7 +264,7 @@ double elements_by_volume(const OctreeField& grid, const SurfaceMesh& surface, c
 
 double count_by(const OctreeField& grid, const SurfaceMesh& surface, const DividedSurface& divided,
                 const ThinWalls& walls, std::optional<std::size_t> triangles) {
-  const std::vector<double> sizes = sizes_at(divided.pieces, grid);
+  const RawVector<double> sizes = sizes_at(divided.pieces, grid);
   const double by_volume = elements_by_volume(grid, surface, divided, sizes);
   const double excess = walls.excess_tets(divided.pieces, sizes, triangles);
   return std::max(1.0, std::abs(excess) < kWorthCounting * by_volume ? by_volume : by_volume + excess);

@@ -27,6 +27,7 @@
 #include <algorithm>
 #include <atomic>
 #include <cmath>
+#include <cstring>
 #include <span>
 #include <utility>
 
@@ -48,8 +49,8 @@ constexpr int kGentlePasses = 12;
 constexpr int kMostPasses = 30;
 /// Leaves of which the smallest corners differ by less are one group: about one leaf lies between its ends.
 constexpr double kRatioInGroup = 1.1;
-constexpr int kColours = 4;
-constexpr std::size_t kCornersAtOnce = 1024, kLeavesAtOnce = 256;
+constexpr std::uint32_t kColours = 4;
+constexpr std::size_t kCornersAtOnce = 512, kLeavesAtOnce = 32, kMarksAtOnce = 16384;
 
 /// A free corner is to be no higher.
 struct Cut {
@@ -57,24 +58,18 @@ struct Cut {
   double value, source;
 };
 
-/// The leaves of each corner, as 8 * leaf + which of its corners.
-Groups<> leaves_of_corners(const Octree& tree, const OctreeCorners& corners) {
-  return group_by_owner(corners.size(), static_cast<std::uint32_t>(8 * tree.size()),
-                        [&](std::uint32_t i) { return corners.of_leaf[i / 8][i % 8]; });
-}
-
 /// Shortest paths with sources everywhere; hanging corners take part like others here.
 class PathSweep {
  public:
-  PathSweep(const Octree& tree, const OctreeCorners& corners, const Groups<>& leaves, double slope,
-            std::span<double> value, std::span<double> source)
-      : tree_(tree), corners_(corners), leaves_(leaves), slope_(slope), value_(value), source_(source) {}
+  PathSweep(const Octree& tree, const OctreeCorners& corners, double slope, std::span<double> value,
+            std::span<double> source)
+      : tree_(tree), corners_(corners), slope_(slope), value_(value), source_(source) {}
 
   /// Each corner that was lowered lowers its neighbours in turn, until none is left: in any order the least sums
   /// remain.
   void run(const RunContext& context) {
-    const std::vector<double> caps(value_.begin(), value_.end());
-    std::vector<std::uint32_t> lowered = parallel_collect<std::uint32_t>(
+    const RawVector<double> caps = parallel_copy(value_);
+    Lowered lowered = parallel_collect<std::uint32_t, Lowered>(
         value_.size(), kCornersAtOnce, [&](std::size_t begin, std::size_t end, std::vector<std::uint32_t>& out) {
           for (auto c = static_cast<std::uint32_t>(begin); c < end; ++c) {
             bool limits = false;
@@ -82,7 +77,7 @@ class PathSweep {
             if (limits) out.push_back(c);
           }
         });
-    std::vector<std::uint8_t> waits(value_.size(), 0);
+    RawVector<std::uint8_t> waits = parallel_filled(value_.size(), std::uint8_t{0});
     while (!lowered.empty()) {
       context.check();
       lowered = lower_neighbours_of(lowered, waits);
@@ -92,10 +87,12 @@ class PathSweep {
   }
 
  private:
+  using Lowered = RawVector<std::uint32_t>;
+
   /// Calls visit(corner, value) for each corner that an edge of a leaf joins to `from` and that its value limits.
   template <class Visit>
   void for_each_limited(std::uint32_t from, Visit&& visit) {
-    for (const std::uint32_t i : leaves_[from]) {
+    for (const std::uint32_t i : corners_.leaves[from]) {
       const std::uint32_t leaf = i / 8, k = i % 8;
       const double rise = slope_ / (1u << tree_.leaf(leaf).level());
       for (std::uint32_t d = 1; d < 8; d *= 2) {
@@ -107,22 +104,21 @@ class PathSweep {
   }
 
   /// Returns those that it lowers, each once. `waits`: whether a corner is among them.
-  std::vector<std::uint32_t> lower_neighbours_of(const std::vector<std::uint32_t>& corners,
-                                                 std::vector<std::uint8_t>& waits) {
-    return parallel_collect<std::uint32_t>(corners.size(), kCornersAtOnce,
-                                           [&](std::size_t begin, std::size_t end, std::vector<std::uint32_t>& out) {
-                                             for (std::size_t i = begin; i < end; ++i)
-                                               for_each_limited(corners[i], [&](std::uint32_t to, double v) {
-                                                 SharedValue(value_[to]).lower_to(v);
-                                                 if (!SharedValue(waits[to]).exchange(1)) out.push_back(to);
-                                               });
-                                           });
+  Lowered lower_neighbours_of(const Lowered& corners, RawVector<std::uint8_t>& waits) {
+    return parallel_collect<std::uint32_t, Lowered>(
+        corners.size(), kCornersAtOnce, [&](std::size_t begin, std::size_t end, std::vector<std::uint32_t>& out) {
+          for (std::size_t i = begin; i < end; ++i)
+            for_each_limited(corners[i], [&](std::uint32_t to, double v) {
+              SharedValue(value_[to]).lower_to(v);
+              if (!SharedValue(waits[to]).exchange(1)) out.push_back(to);
+            });
+        });
   }
 
   /// A corner has the source of the one that lowered it, which has its own from another: of those from which its value
   /// comes the least one, and the first of these.
-  void take_sources(const std::vector<double>& caps) {
-    std::vector<std::uint32_t> from(value_.size()), next(value_.size());
+  void take_sources(const RawVector<double>& caps) {
+    RawVector<std::uint32_t> from(value_.size()), next(value_.size());
     parallel_for(value_.size(), [&](std::size_t c) {
       from[c] = static_cast<std::uint32_t>(c);
       if (value_[c] < caps[c]) from[c] = lowered_by(static_cast<std::uint32_t>(c));
@@ -147,7 +143,7 @@ class PathSweep {
 
   std::uint32_t lowered_by(std::uint32_t corner) const {
     std::uint32_t best = corner;
-    for (const std::uint32_t i : leaves_[corner]) {
+    for (const std::uint32_t i : corners_.leaves[corner]) {
       const std::uint32_t leaf = i / 8, k = i % 8;
       const double rise = slope_ / (1u << tree_.leaf(leaf).level());
       for (std::uint32_t d = 1; d < 8; d *= 2) {
@@ -161,7 +157,6 @@ class PathSweep {
 
   const Octree& tree_;
   const OctreeCorners& corners_;
-  const Groups<>& leaves_;
   double slope_;
   std::span<double> value_, source_;
 };
@@ -173,23 +168,23 @@ class Grader {
         corners_(corners),
         slope_(gradation * kSafety),
         value_(std::move(caps.value)),
-        source_(std::move(caps.source)),
-        leaves_(leaves_of_corners(tree, corners)) {
-    for (std::size_t c = 0; c < value_.size(); ++c)
+        source_(std::move(caps.source)) {
+    parallel_for(value_.size(), [&](std::size_t c) {
       if (!(value_[c] < ceiling)) value_[c] = source_[c] = ceiling;
+    });
   }
 
   GradedCorners run(const RunContext& context) {
-    PathSweep(tree_, corners_, leaves_, slope_, value_, source_).run(context);
+    PathSweep(tree_, corners_, slope_, value_, source_).run(context);
     order_leaves();
     collect_dependents();
-    dirty_.assign(tree_.size(), 1);
+    dirty_ = parallel_filled(tree_.size(), std::uint8_t{1});
     for (int round = 1; round <= kMostRounds; ++round) {
       context.check();
       if (!cut_steep_leaves()) break;
     }
     shrink();
-    GradedCorners result{std::vector<double>(value_.size()), std::vector<double>(value_.size())};
+    GradedCorners result{RawVector<double>(value_.size()), RawVector<double>(value_.size())};
     parallel_for(value_.size(), [&](std::size_t i) {
       const auto c = static_cast<std::uint32_t>(i);
       result.value[c] = at(value_, c);
@@ -207,13 +202,18 @@ class Grader {
     for (const OctreeCorners::Share& s : corners_.shares_of(corner)) sum += s.weight * of_free(s.corner);
     return sum;
   }
-  double at(const std::vector<double>& of_free, std::uint32_t corner) const {
+  double at(const RawVector<double>& of_free, std::uint32_t corner) const {
     return at_corner(corner, [&](std::uint32_t c) { return of_free[c]; });
   }
 
-  /// Leaves in the order of their smallest corner.
+  /// Leaves in the order of their smallest corner, in groups; in a group by colour and along the curve.
   void order_leaves() {
-    std::vector<std::pair<double, std::uint32_t>> order(tree_.size());
+    struct Place {
+      double least;
+      std::uint32_t leaf;
+      auto operator<=>(const Place&) const = default;
+    };
+    RawVector<Place> order(tree_.size());
     plain_.resize(tree_.size());
     parallel_for(tree_.size(), [&](std::size_t l) {
       const auto& corners = corners_.of_leaf[l];
@@ -223,31 +223,58 @@ class Grader {
       plain_[l] = std::none_of(corners.begin(), corners.end(), [&](std::uint32_t c) { return corners_.hangs(c); });
     });
     parallel_sort(order);
-    order_.resize(order.size());
-    parallel_for(order.size(), [&](std::size_t i) { order_[i] = order[i].second; });
+    std::vector<std::uint32_t> group_ends;
     for (auto begin = order.begin(); begin != order.end();) {
-      begin = std::lower_bound(begin + 1, order.end(), std::pair(begin->first * kRatioInGroup, 0u));
-      groups_.push_back(static_cast<std::size_t>(begin - order.begin()));
+      begin = std::lower_bound(begin + 1, order.end(), Place{begin->least * kRatioInGroup, 0});
+      group_ends.push_back(static_cast<std::uint32_t>(begin - order.begin()));
     }
+    RawVector<std::uint32_t> group_of(tree_.size());
+    parallel_ranges(order.size(), Split::kAdaptive, [&](std::size_t begin, std::size_t end) {
+      auto group = std::upper_bound(group_ends.begin(), group_ends.end(), begin);
+      for (std::size_t i = begin; i < end; ++i) {
+        if (i == *group) ++group;
+        group_of[order[i].leaf] = static_cast<std::uint32_t>(group - group_ends.begin());
+      }
+    });
+    in_turn_ = group_by_owner(kColours * group_ends.size(), static_cast<std::uint32_t>(tree_.size()),
+                              [&](std::uint32_t l) { return kColours * group_of[l] + colour_of(l); });
+    rank_.resize(tree_.size());
+    parallel_for(tree_.size(), [&](std::size_t i) { rank_[in_turn_.items()[i]] = static_cast<std::uint32_t>(i); });
   }
 
   double bound_of(std::uint32_t leaf) const { return slope_ / (1u << tree_.leaf(leaf).level()); }
 
   void collect_dependents() {
-    dependents_ = {corners_.size(), [&](const auto& add) {
-                     for (std::uint32_t c = 0; c < corners_.size(); ++c)
-                       for (const OctreeCorners::Share& s : corners_.shares_of(c)) add(s.corner, c);
-                   }};
+    RawVector<std::uint32_t> hanging(corners_.shares.size());  // whose the shares are
+    parallel_for(corners_.size(), [&](std::size_t c) {
+      std::fill(hanging.begin() + corners_.first_share[c], hanging.begin() + corners_.first_share[c + 1],
+                static_cast<std::uint32_t>(c));
+    });
+    dependents_ = group_by_owner(corners_.size(), static_cast<std::uint32_t>(hanging.size()),
+                                 [&](std::uint32_t i) { return corners_.shares[i].corner; });
+    parallel_for(dependents_.size(), [&](std::size_t c) {
+      for (std::uint32_t& i : dependents_[c]) i = hanging[i];
+    });
   }
 
   /// The leaves that see a corner have to be looked at (again).
   void mark(std::uint32_t corner) {
-    for (const std::uint32_t i : leaves_[corner]) SharedValue(dirty_[i / 8]).store(1);
+    for (const std::uint32_t i : corners_.leaves[corner]) SharedValue(dirty_[rank_[i / 8]]).store(1);
   }
 
-  static double squared_slope(const std::array<double, 8>& h, int c) {
-    const double x = h[c ^ 1] - h[c], y = h[c ^ 2] - h[c], z = h[c ^ 4] - h[c];
-    return x * x + y * y + z * z;
+  /// At each corner of a leaf. Both ends of an edge rise as much, one up and one down.
+  static std::array<double, 8> squared_slopes(const std::array<double, 8>& h) {
+    std::array<double, 8> x, y, z, slopes;
+    for (std::size_t c = 0; c < 8; c += 2) x[c] = x[c + 1] = squared(h[c + 1] - h[c]);
+    for (const std::size_t c : {0, 1, 4, 5}) y[c] = y[c + 2] = squared(h[c + 2] - h[c]);
+    for (std::size_t c = 0; c < 4; ++c) z[c] = z[c + 4] = squared(h[c + 4] - h[c]);
+    for (std::size_t c = 0; c < 8; ++c) slopes[c] = x[c] + y[c] + z[c];
+    return slopes;
+  }
+  static double squared(double x) { return x * x; }
+  double steepest_in(std::uint32_t leaf) const {
+    const std::array<double, 8> slopes = squared_slopes(values_of(leaf));
+    return *std::ranges::max_element(slopes);
   }
 
   template <class OfFree>
@@ -266,17 +293,12 @@ class Grader {
     return bound * bound * (1 + kTolerance) * (1 + kTolerance);
   }
 
-  bool is_steep(std::uint32_t leaf) const {
-    const std::array<double, 8> h = values_of(leaf);
-    for (int c = 0; c < 8; ++c)
-      if (squared_slope(h, c) > tolerated(leaf)) return true;
-    return false;
-  }
+  bool is_steep(std::uint32_t leaf) const { return steepest_in(leaf) > tolerated(leaf); }
 
   /// Leaves that are not steep as the round begins need a look only if a cut touches them, which marks them.
   void forget_gentle_leaves() {
-    parallel_for(tree_.size(), [this](std::size_t l) {
-      if (dirty_[l] && !is_steep(static_cast<std::uint32_t>(l))) dirty_[l] = 0;
+    parallel_for(tree_.size(), [this](std::size_t i) {
+      if (dirty_[i] && !is_steep(in_turn_.items()[i])) dirty_[i] = 0;
     });
   }
 
@@ -284,22 +306,19 @@ class Grader {
   bool cut_steep_leaves() {
     forget_gentle_leaves();
     bool any = false;
-    std::size_t begin = 0;
-    for (const std::size_t end : groups_) {
-      const std::span<const std::uint32_t> group(order_.data() + begin, order_.data() + end);
+    for (std::size_t first = 0; first < in_turn_.size(); first += kColours)
       for (int pass = 1; pass <= kMostPasses; ++pass) {
-        if (!cut_in_group(group, pass <= kGentlePasses)) break;
+        if (!cut_in_group(first, pass <= kGentlePasses)) break;
         any = true;
       }
-      begin = end;
-    }
     return any;
   }
 
-  bool cut_in_group(std::span<const std::uint32_t> group, bool gently) {
+  /// `first`: its leaves of the first colour.
+  bool cut_in_group(std::size_t first, bool gently) {
     bool any = false;
-    for (int colour = 0; colour < kColours; ++colour) {
-      const std::vector<Cut> cuts = cuts_of(group, colour, gently);
+    for (std::size_t turn = first; turn < first + kColours; ++turn) {
+      const auto cuts = cuts_of(dirty_in(turn), gently);
       make(cuts);
       any = any || !cuts.empty();
     }
@@ -307,25 +326,38 @@ class Grader {
   }
 
   /// Of eight children two are of one colour, which share a corner alone.
-  int colour_of(std::uint32_t leaf) const {
+  std::uint32_t colour_of(std::uint32_t leaf) const {
     const int child = tree_.leaf(leaf).child_number();
-    return std::min(child, 7 - child);
+    return static_cast<std::uint32_t>(std::min(child, 7 - child));
   }
 
-  /// What the dirty leaves of a group and colour ask of their corners.
-  std::vector<Cut> cuts_of(std::span<const std::uint32_t> group, int colour, bool gently) {
-    return parallel_collect<Cut>(group.size(), kLeavesAtOnce,
-                                 [&](std::size_t begin, std::size_t end, std::vector<Cut>& cuts) {
-                                   for (const std::uint32_t leaf : group.subspan(begin, end - begin)) {
-                                     if (!dirty_[leaf] || colour_of(leaf) != colour) continue;
-                                     dirty_[leaf] = 0;
-                                     collect_cuts(leaf, gently, cuts);
-                                   }
-                                 });
+  /// The dirty leaves of a group and colour, which are no more so.
+  RawVector<std::uint32_t> dirty_in(std::size_t turn) {
+    const std::uint8_t* first = dirty_.data() + in_turn_.first(turn);
+    return parallel_collect<std::uint32_t, RawVector<std::uint32_t>>(
+        in_turn_[turn].size(), kMarksAtOnce,
+        [&](std::size_t begin, std::size_t end, std::vector<std::uint32_t>& found) {
+          const auto next = [&](const std::uint8_t* from) {
+            return static_cast<const std::uint8_t*>(std::memchr(from, 1, static_cast<std::size_t>(first + end - from)));
+          };
+          for (const std::uint8_t* at = next(first + begin); at != nullptr; at = next(at + 1)) {
+            found.push_back(in_turn_.items()[static_cast<std::size_t>(at - dirty_.data())]);
+            dirty_[static_cast<std::size_t>(at - dirty_.data())] = 0;
+          }
+        });
+  }
+
+  /// What these leaves ask of their corners.
+  RawVector<Cut> cuts_of(const RawVector<std::uint32_t>& leaves, bool gently) const {
+    return parallel_collect<Cut, RawVector<Cut>>(leaves.size(), kLeavesAtOnce,
+                                                 [&](std::size_t begin, std::size_t end, std::vector<Cut>& cuts) {
+                                                   for (std::size_t i = begin; i < end; ++i)
+                                                     collect_cuts(leaves[i], gently, cuts);
+                                                 });
   }
 
   /// Of the cuts of a corner the lowest holds; of several such, the least source.
-  void make(const std::vector<Cut>& cuts) {
+  void make(const RawVector<Cut>& cuts) {
     if (cuts.empty()) return;
     parallel_for(cuts.size(), [&](std::size_t i) { SharedValue(value_[cuts[i].corner]).lower_to(cuts[i].value); });
     const auto for_each_that_holds = [&](const auto& visit) {
@@ -349,11 +381,13 @@ class Grader {
         if (cuts[i].corner == corner) return cuts[i].value;
       return value_[corner];
     };
-    std::array<double, 8> h = values_of(leaf);
+    std::array<double, 8> h = values_of(leaf), slopes = squared_slopes(h);
+    const double most = tolerated(leaf);
     for (int c = 0; c < 8; ++c) {
-      if (squared_slope(h, c) <= tolerated(leaf)) continue;
+      if (slopes[static_cast<std::size_t>(c)] <= most) continue;
       cut(leaf, c, level_of_cut(h, c, bound_of(leaf)), h, now, gently, cuts);
       h = values_of(leaf, now);
+      slopes = squared_slopes(h);
     }
   }
 
@@ -409,29 +443,27 @@ class Grader {
 
   /// Takes out of all differences what still exceeds the slope.
   void shrink() {
-    std::vector<double> steepness(tree_.size());
-    parallel_for(tree_.size(), [&](std::size_t l) {
+    const double steepest = parallel_max(tree_.size(), 1.0, [&](std::size_t l) {
       const auto leaf = static_cast<std::uint32_t>(l);
-      const std::array<double, 8> h = values_of(leaf);
       const double bound = bound_of(leaf);
-      for (int c = 0; c < 8; ++c) steepness[l] = std::max(steepness[l], squared_slope(h, c) / (bound * bound));
+      return steepest_in(leaf) / (bound * bound);
     });
-    const double steepest = std::max(1.0, *std::max_element(steepness.begin(), steepness.end()));
     if (steepest == 1) return;
-    const double least = *std::min_element(value_.begin(), value_.end()), by = 1 / std::sqrt(steepest);
+    const double least = -parallel_max(value_.size(), -HUGE_VAL, [&](std::size_t c) { return -value_[c]; });
+    const double by = 1 / std::sqrt(steepest);
     parallel_for(value_.size(), [&](std::size_t c) { value_[c] = least + (value_[c] - least) * by; });
   }
 
   const Octree& tree_;
   const OctreeCorners& corners_;
   double slope_;
-  std::vector<double> value_;                ///< per corner; where free
-  std::vector<double> source_;               ///< likewise: what the source asked for that limits it
-  std::vector<std::uint8_t> plain_, dirty_;  ///< per leaf
-  std::vector<std::uint32_t> order_;
-  std::vector<std::size_t> groups_;  ///< of the order: where each ends
-  Groups<> leaves_;                  ///< per corner
-  Groups<> dependents_;              ///< per free corner: the hanging corners that it is part of
+  RawVector<double> value_;        ///< per corner; where free
+  RawVector<double> source_;       ///< likewise: what the source asked for that limits it
+  RawVector<std::uint8_t> plain_;  ///< per leaf
+  Groups<> in_turn_;               ///< the leaves of each colour of each group
+  RawVector<std::uint32_t> rank_;  ///< per leaf: where it is among these
+  RawVector<std::uint8_t> dirty_;  ///< in that order
+  Groups<> dependents_;            ///< per free corner: the hanging corners that it is part of
 };
 
 }  // namespace
@@ -442,12 +474,13 @@ GradedCorners graded_corners(const Octree& tree, const OctreeCorners& corners, G
 }
 
 std::shared_ptr<OctreeField> graded_field(const RootCube& root, Octree tree, const OctreeCorners& corners,
-                                          const std::vector<double>& caps, double gradation, double ceiling,
+                                          std::span<const double> caps, double gradation, double ceiling,
                                           const RunContext& context) {
   auto field = std::make_shared<OctreeField>();
   field->root = root;
   field->gradation = gradation;
-  field->h = corners.at_leaves(graded_corners(tree, corners, {caps, caps}, gradation, ceiling, context).value);
+  field->h = corners.at_leaves(
+      graded_corners(tree, corners, {parallel_copy(caps), parallel_copy(caps)}, gradation, ceiling, context).value);
   field->tree = std::move(tree);
   field->find_range();
   return field;

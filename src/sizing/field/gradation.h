@@ -6,13 +6,13 @@
 #include "sizing/field/octree_field.h"
 
 #include <memory>
-#include <vector>
+#include <span>
 
 namespace octafront {
 
 /// Per corner the value, and what part of it a source of size asked for; the rest is what it grew by on the way.
 struct GradedCorners {
-  std::vector<double> value, source;
+  RawVector<double> value, source;
 };
 
 /// Corner values, as large as fairness allows, with value <= cap at every free corner, and a trilinear interpolant that
@@ -26,7 +26,7 @@ GradedCorners graded_corners(const Octree& tree, const OctreeCorners& corners, G
                              double ceiling, const RunContext& context);
 /// The field of such values.
 std::shared_ptr<OctreeField> graded_field(const RootCube& root, Octree tree, const OctreeCorners& corners,
-                                          const std::vector<double>& caps, double gradation, double ceiling,
+                                          std::span<const double> caps, double gradation, double ceiling,
                                           const RunContext& context);
 
 }  // namespace octafront

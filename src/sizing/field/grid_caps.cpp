@@ -93,18 +93,17 @@ class GridCapper {
   }
 
   /// The old size at each corner, lowered by the caps near it.
-  std::vector<double> corner_limits(const Octree& tree) const {
-    std::vector<double> limit(corners_.size());
-    for (std::size_t c = 0; c < corners_.size(); ++c) {
-      limit[c] = old_.at(old_.root.position(corners_.position[c])) / old_.root.side;
-    }
+  RawVector<double> corner_limits(const Octree& tree) const {
+    RawVector<double> limit(corners_.size());
+    parallel_for(corners_.size(),
+                 [&](std::size_t c) { limit[c] = old_.at(old_.root.position(corners_.position[c])) / old_.root.side; });
     std::size_t next = 0;
     lower(tree, OctreeKey::root(), all_caps(), next, limit);
     return limit;
   }
 
   void lower(const Octree& tree, OctreeKey cell, const std::vector<std::uint32_t>& near, std::size_t& next,
-             std::vector<double>& limit) const {
+             RawVector<double>& limit) const {
     const std::vector<std::uint32_t> here = mattering(cell, near).caps;
     if (tree.leaf(next) != cell) {
       for (int i = 0; i < 8; ++i) lower(tree, cell.child(i), here, next, limit);

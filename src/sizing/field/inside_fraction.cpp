@@ -42,11 +42,11 @@ struct Branch {
 };
 
 /// Enough of them for all threads, and what lies above them is nothing.
-constexpr int kBranchLevel = 3;
+constexpr int kBranchLevel = 4;
 
 std::vector<Branch> branches_of(const Octree& tree) {
   std::vector<Branch> branches;
-  const std::vector<OctreeKey>& leaves = tree.leaves();
+  const std::span<const OctreeKey> leaves = tree.leaves();
   for (auto leaf = leaves.begin(); leaf != leaves.end();) {
     if (leaf->level() <= kBranchLevel) {
       ++leaf;
@@ -71,7 +71,7 @@ std::vector<Branch> branches_of(const Octree& tree) {
 class Haar {
  public:
   /// `first`: the first leaf in the cell. REQUIRES: the moments of the branches are known.
-  Haar(const Octree& tree, const std::vector<Moments>& of_leaf, OctreeKey cell, std::size_t first,
+  Haar(const Octree& tree, const RawVector<Moments>& of_leaf, OctreeKey cell, std::size_t first,
        std::span<Branch> branches)
       : tree_(tree), of_leaf_(of_leaf), cell_(cell), first_(first), branches_(branches) {
     std::size_t next_leaf = first, next_branch = 0;
@@ -81,7 +81,7 @@ class Haar {
   const Moments& sum() const { return sum_; }
 
   /// Sets the fractions of the leaves in the cell, and the averages of the branches that have any surface.
-  void spread(double average, std::vector<double>& fraction) const {
+  void spread(double average, RawVector<double>& fraction) const {
     if (inner_.empty())
       fraction[first_] = std::clamp(average, 0.0, 1.0);
     else
@@ -143,8 +143,7 @@ class Haar {
     return sum / (axes * s * s * s);
   }
 
-  void spread(OctreeKey cell, double average, std::size_t inner, std::size_t begin,
-              std::vector<double>& fraction) const {
+  void spread(OctreeKey cell, double average, std::size_t inner, std::size_t begin, RawVector<double>& fraction) const {
     const Inner& in = inner_[inner];
     std::array<double, 8> c{};
     for (int e = 1; e < 8; ++e) c[e] = coefficient(in, e, 1.0 / (1u << cell.level()));
@@ -170,7 +169,7 @@ class Haar {
   }
 
   const Octree& tree_;
-  const std::vector<Moments>& of_leaf_;
+  const RawVector<Moments>& of_leaf_;
   OctreeKey cell_;
   std::size_t first_;
   std::span<Branch> branches_;
@@ -179,9 +178,8 @@ class Haar {
 };
 
 /// In each leaf its pieces are added up in their order.
-std::vector<Moments> moments_of_leaves(const RootCube& root, const Octree& tree,
-                                       const std::vector<SurfacePiece>& pieces) {
-  std::vector<Moments> of_leaf(tree.size());
+RawVector<Moments> moments_of_leaves(const RootCube& root, const Octree& tree, std::span<const SurfacePiece> pieces) {
+  RawVector<Moments> of_leaf = parallel_filled(tree.size(), Moments{});
   const auto add = [&](const SurfacePiece& piece) {
     of_leaf[piece.leaf].add(piece.n / (root.side * root.side),
                             (piece.p - root.corner_of(tree.leaf(piece.leaf))) / root.side);
@@ -222,9 +220,9 @@ void split(const RootCube& root, const Octree& tree, Vec3 a, Vec3 b, Vec3 c, std
 
 }  // namespace
 
-std::vector<SurfacePiece> surface_pieces(const RootCube& root, const Octree& tree, const SurfaceMesh& surface) {
-  constexpr std::size_t kRange = 1024;
-  return parallel_collect<SurfacePiece>(
+RawVector<SurfacePiece> surface_pieces(const RootCube& root, const Octree& tree, const SurfaceMesh& surface) {
+  constexpr std::size_t kRange = 512;
+  return parallel_collect<SurfacePiece, RawVector<SurfacePiece>>(
       surface.triangles.size(), kRange, [&](std::size_t begin, std::size_t end, std::vector<SurfacePiece>& pieces) {
         for (std::size_t f = begin; f < end; ++f) {
           const Triangle& t = surface.triangles[f];
@@ -233,10 +231,9 @@ std::vector<SurfacePiece> surface_pieces(const RootCube& root, const Octree& tre
       });
 }
 
-std::vector<double> inside_fractions(const RootCube& root, const Octree& tree,
-                                     const std::vector<SurfacePiece>& pieces) {
-  const std::vector<Moments> of_leaf = moments_of_leaves(root, tree, pieces);
-  std::vector<double> fraction(tree.size());
+RawVector<double> inside_fractions(const RootCube& root, const Octree& tree, std::span<const SurfacePiece> pieces) {
+  const RawVector<Moments> of_leaf = moments_of_leaves(root, tree, pieces);
+  RawVector<double> fraction(tree.size());
   std::vector<Branch> branches = branches_of(tree);
   std::vector<std::optional<Haar>> below(branches.size());
   parallel_for(

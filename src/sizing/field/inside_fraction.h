@@ -3,7 +3,7 @@
 #include "sizing/field/octree.h"
 
 #include <cstdint>
-#include <vector>
+#include <span>
 
 namespace octafront {
 
@@ -17,12 +17,12 @@ struct SurfacePiece {
 };
 
 /// The surface in pieces that are no longer than the leaf that their centroid lies in.
-std::vector<SurfacePiece> surface_pieces(const RootCube& root, const Octree& tree, const SurfaceMesh& surface);
+RawVector<SurfacePiece> surface_pieces(const RootCube& root, const Octree& tree, const SurfaceMesh& surface);
 
 /// Per leaf, which part of its volume lies inside the surface, in [0, 1]; exactly 0 or 1 for leaves without pieces, up
 /// to the error of counting each piece to one leaf. Needs no search for neighbours and no ray: the averages of the
 /// indicator function over all cells come from sums over the pieces (its Haar wavelets; J. Manson, G. Petrova,
 /// S. Schaefer, "Streaming surface reconstruction using wavelets", 2008). O(pieces log leaves).
-std::vector<double> inside_fractions(const RootCube& root, const Octree& tree, const std::vector<SurfacePiece>& pieces);
+RawVector<double> inside_fractions(const RootCube& root, const Octree& tree, std::span<const SurfacePiece> pieces);
 
 }  // namespace octafront

@@ -3,6 +3,7 @@
 #include "base/core/validate.h"
 
 #include <algorithm>
+#include <utility>
 
 namespace octafront {
 
@@ -29,19 +30,25 @@ RootCube RootCube::around(const Box3& box, double margin) {
   return {box.center() - Vec3{half, half, half}, side};
 }
 
-Octree::Octree(std::vector<OctreeKey> leaves) : leaves_(std::move(leaves)) {
-  for (const OctreeKey leaf : leaves_) depth_ = std::max(depth_, leaf.level());
-  while (grid_level_ < std::min(kMaxGridLevel, depth_) && (std::size_t{1} << (3 * grid_level_)) < leaves_.size()) {
+Octree::Octree(RawVector<OctreeKey> leaves) {
+  depth_ = parallel_max(leaves.size(), 0, [&](std::size_t i) { return leaves[i].level(); });
+  while (grid_level_ < std::min(kMaxGridLevel, depth_) && (std::size_t{1} << (3 * grid_level_)) < leaves.size()) {
     ++grid_level_;
   }
   const std::size_t cells = std::size_t{1} << (3 * grid_level_);
-  first_.resize(cells + 1);
-  std::size_t next = 0;
-  for (std::size_t i = 0; i < leaves_.size(); ++i) {
-    const std::size_t last = position_at(OctreeKey::from_id(leaves_[i].range_max()), grid_level_);
-    while (next <= last) first_[next++] = static_cast<std::uint32_t>(i);
-  }
-  first_[cells] = static_cast<std::uint32_t>(leaves_.size() - 1);
+  RawVector<std::uint32_t> first(cells + 1);
+  const auto behind = [&](std::size_t leaf) {
+    return position_at(OctreeKey::from_id(leaves[leaf].range_max()), grid_level_) + 1;
+  };
+  parallel_ranges(leaves.size(), Split::kAdaptive, [&](std::size_t begin, std::size_t end) {
+    std::size_t next = begin == 0 ? 0 : behind(begin - 1);
+    for (std::size_t i = begin; i < end; ++i)
+      for (const std::size_t last = behind(i); next < last;) first[next++] = static_cast<std::uint32_t>(i);
+  });
+  first[cells] = static_cast<std::uint32_t>(leaves.size() - 1);
+  arrays_ = std::make_shared<const Arrays>(Arrays{std::move(leaves), std::move(first)});
+  leaves_ = arrays_->leaves;
+  first_ = arrays_->first;
   validate(*this);
 }
 
@@ -82,7 +89,7 @@ std::optional<std::string> Octree::first_inconsistency() const {
   return std::nullopt;
 }
 
-bool cover_the_root(const std::vector<OctreeKey>& leaves) {
+bool cover_the_root(std::span<const OctreeKey> leaves) {
   std::uint64_t begin = OctreeKey::root().range_min();
   for (const OctreeKey leaf : leaves) {
     if (!leaf.is_valid() || leaf.range_min() != begin) return false;

@@ -2,13 +2,16 @@
 
 #include <octafront/vec.h>
 
+#include "base/core/parallel_arrays.h"
 #include "sizing/field/octree_key.h"
 
 #include <array>
 #include <cstddef>
 #include <cstdint>
 #include <functional>
+#include <memory>
 #include <optional>
+#include <span>
 #include <string>
 #include <vector>
 
@@ -42,17 +45,18 @@ struct RootCube {
   }
 };
 
-/// A linear octree: the keys of its leaves, sorted. They cover the root cube and do not overlap.
+/// A linear octree: the keys of its leaves, sorted. They cover the root cube and do not overlap. Copies share them.
 class Octree {
  public:
   /// The root alone.
-  Octree() : Octree({OctreeKey::root()}) {}
+  Octree() : Octree(std::vector<OctreeKey>{OctreeKey::root()}) {}
   /// REQUIRES: the leaves are sorted and cover the root without overlap.
-  explicit Octree(std::vector<OctreeKey> leaves);
+  explicit Octree(RawVector<OctreeKey> leaves);
+  explicit Octree(const std::vector<OctreeKey>& leaves) : Octree(parallel_copy(leaves)) {}
 
   std::size_t size() const { return leaves_.size(); }
   OctreeKey leaf(std::size_t i) const { return leaves_[i]; }
-  const std::vector<OctreeKey>& leaves() const { return leaves_; }
+  std::span<const OctreeKey> leaves() const { return leaves_; }
   int depth() const { return depth_; }
 
   /// Index of the leaf that contains the cell, or that it contains first. O(log) of the leaves in one cell of a lookup
@@ -66,28 +70,39 @@ class Octree {
   std::optional<std::string> first_inconsistency() const;
 
  private:
-  std::vector<OctreeKey> leaves_;
-  std::vector<std::uint32_t> first_;  ///< per cell of level grid_level_: the leaf that contains its first unit
+  struct Arrays {
+    RawVector<OctreeKey> leaves;
+    RawVector<std::uint32_t> first;
+  };
+  std::shared_ptr<const Arrays> arrays_;
+  std::span<const OctreeKey> leaves_;
+  std::span<const std::uint32_t> first_;  ///< per cell of level grid_level_: the leaf that contains its first unit
   int grid_level_ = 0, depth_ = 0;
 };
 
 /// True if the keys are cells, sorted, that cover the root without overlap: what an Octree can be made of.
-bool cover_the_root(const std::vector<OctreeKey>& leaves);
+bool cover_the_root(std::span<const OctreeKey> leaves);
 
 /// The cells of an octree that are divided, level by level. A set under construction: divide() may be called in any
 /// order; ancestors need not be given.
 class DividedCells {
  public:
   void divide(OctreeKey cell) { levels_[cell.level()].push_back(cell); }
+  void divide(std::span<const OctreeKey> cells) {
+    for (const OctreeKey cell : cells) divide(cell);
+  }
   /// Adds every cell that a tree with these cells divided has divided, and those which 2:1 balance over faces, edges
   /// and corners demands. The result is the smallest balanced tree.
   void close();
   /// The leaves of the closed set.
   Octree tree() const;
-  const std::vector<OctreeKey>& level(int l) const { return levels_[l]; }
+  const RawVector<OctreeKey>& level(int l) const { return levels_[l]; }
 
  private:
-  std::array<std::vector<OctreeKey>, OctreeKey::kMaxLevel + 1> levels_;
+  using Level = RawVector<OctreeKey>;
+  void leaves_below(OctreeKey top, std::vector<OctreeKey>& leaves) const;
+
+  std::array<Level, OctreeKey::kMaxLevel + 1> levels_;
 };
 
 /// The divided cells of a tree: all proper ancestors of its leaves; where leaf i is the first of eight in a cell, only

@@ -5,6 +5,7 @@
 #include "base/core/parallel.h"
 
 #include <algorithm>
+#include <memory>
 
 namespace octafront {
 
@@ -19,14 +20,22 @@ class Numbering {
   explicit Numbering(const Octree& tree) : tree_(tree), tables_(thread_count() == 1 ? 1 : kTables) {
     first_ = tables_.size() == 1 ? first_slots() : first_slots_by_table();
     number_.resize(first_.size());
-    for (std::size_t i = 0; i < first_.size(); ++i)
-      if (is_first(i)) number_[i] = corners_++;
+    const auto count = [this](std::size_t begin, std::size_t end) {
+      std::size_t sum = 0;
+      for (std::size_t i = begin; i < end; ++i) sum += is_first(i);
+      return sum;
+    };
+    corners_ = number_in_blocks(first_.size(), count, [this](std::size_t begin, std::size_t end, std::size_t next) {
+      for (std::size_t i = begin; i < end; ++i)
+        if (is_first(i)) number_[i] = static_cast<std::uint32_t>(next++);
+      return next;
+    });
     parallel_for(first_.size(), [&](std::size_t i) {
       if (!is_first(i)) number_[i] = number_[first_[i]];
     });
   }
 
-  std::uint32_t corners() const { return corners_; }
+  std::size_t corners() const { return corners_; }
   std::uint32_t of_slot(std::size_t slot) const { return number_[slot]; }
   /// Whether no slot before it has the same corner.
   bool is_first(std::size_t slot) const { return first_[slot] == slot; }
@@ -45,13 +54,13 @@ class Numbering {
   static constexpr int kRecentBits = 12;
 
   /// The table knows all corners; three of four are those of a leaf shortly before.
-  std::vector<std::uint32_t> first_slots() {
+  RawVector<std::uint32_t> first_slots() {
     struct Recent {
       std::uint64_t code;
       std::uint32_t first;
     };
     std::vector<Recent> recent(std::size_t{1} << kRecentBits, {FlatKeys<std::uint64_t>::kEmpty, 0});
-    std::vector<std::uint32_t> first(8 * tree_.size());
+    RawVector<std::uint32_t> first(8 * tree_.size());
     tables_[0].reset(first.size() / 5);
     for (std::uint32_t i = 0; i < first.size(); ++i) {
       const std::uint64_t at = code(position(i));
@@ -62,8 +71,8 @@ class Numbering {
     return first;
   }
 
-  std::vector<std::uint32_t> first_slots_by_table() {
-    std::vector<std::uint32_t> first(8 * tree_.size());
+  RawVector<std::uint32_t> first_slots_by_table() {
+    RawVector<std::uint32_t> first(8 * tree_.size());
     const Buckets<> by_table(first.size(), tables_.size(), [&](std::size_t i, const auto& add) {
       add(table_of(code(position(i))), static_cast<std::uint32_t>(i));
     });
@@ -86,8 +95,8 @@ class Numbering {
 
   const Octree& tree_;
   std::vector<FlatMap<std::uint64_t, std::uint32_t>> tables_;  ///< from codes to the first slot
-  std::vector<std::uint32_t> first_, number_;                  ///< per slot: the first with its corner, its number
-  std::uint32_t corners_ = 0;
+  RawVector<std::uint32_t> first_, number_;                    ///< per slot: the first with its corner, its number
+  std::size_t corners_ = 0;
 };
 
 /// In how many of the eight directions a corner at p has space of the root cube.
@@ -121,8 +130,10 @@ OctreeKey larger_leaf_at(const Octree& tree, Units p) {
   return OctreeKey();
 }
 
+using Shares = std::vector<OctreeCorners::Share>;
+
 /// Adds a free corner to the list that begins at `first`; equal ones are merged.
-void add_share(std::vector<OctreeCorners::Share>& pool, std::size_t first, std::uint32_t corner, double weight) {
+void add_share(Shares& pool, std::size_t first, std::uint32_t corner, double weight) {
   for (std::size_t i = first; i < pool.size(); ++i) {
     if (pool[i].corner == corner) {
       pool[i].weight += weight;
@@ -132,10 +143,12 @@ void add_share(std::vector<OctreeCorners::Share>& pool, std::size_t first, std::
   pool.push_back({corner, weight});
 }
 
-/// The shares of the hanging corners, in the order in which they are found.
-struct ShareLists {
-  std::vector<OctreeCorners::Share> pool;
-  std::vector<std::array<std::uint32_t, 2>> range;  ///< per hanging corner: from where to where in the pool
+/// Where the shares of a hanging corner are.
+struct ShareList {
+  const Shares* pool = nullptr;
+  std::uint32_t begin = 0, end = 0;
+
+  std::span<const OctreeCorners::Share> list() const { return std::span(*pool).subspan(begin, end - begin); }
 };
 
 /// The masters of a hanging corner: both ends along each axis on which it lies halfway.
@@ -161,47 +174,99 @@ Masters masters_of(const OctreeCorners& corners, const Numbering& numbers, const
   return masters;
 }
 
-void find_shares(const HangingCorner& h, const Masters& masters, const std::vector<std::uint32_t>& slot,
-                 ShareLists& lists) {
-  const std::size_t first = lists.pool.size();
-  const double weight = 1.0 / masters.count;
-  for (int m = 0; m < masters.count; ++m) {
-    const std::uint32_t master = masters.corner[m];
-    if (slot[master] == 0) {
-      add_share(lists.pool, first, master, weight);
-      continue;
-    }
-    const auto [begin, end] = lists.range[slot[master] - 1];
-    for (std::uint32_t i = begin; i < end; ++i) {
-      const OctreeCorners::Share s = lists.pool[i];
-      add_share(lists.pool, first, s.corner, weight * s.weight);
-    }
-  }
-  lists.range[slot[h.corner] - 1] = {static_cast<std::uint32_t>(first), static_cast<std::uint32_t>(lists.pool.size())};
-}
+constexpr std::uint32_t kFree = 0xffffffff;
 
-std::vector<HangingCorner> hanging_corners(const Octree& tree, const OctreeCorners& corners) {
-  std::vector<std::uint8_t> incident(corners.size(), 0);
-  for (const auto& leaf : corners.of_leaf) {
-    for (const std::uint32_t c : leaf) ++incident[c];
+/// The shares of the hanging corners: `slot` says of each corner which of them it is, or kFree.
+class ShareFinder {
+ public:
+  ShareFinder(const OctreeCorners& corners, const Numbering& numbers, const Buckets<HangingCorner>& by_level)
+      : corners_(corners), numbers_(numbers), slot_(parallel_filled(corners.size(), kFree)), lists_(by_level.items()) {
+    for (std::size_t l = 0; l < by_level.size(); ++l) find_shares(by_level[l], by_level.first(l));
   }
-  constexpr std::size_t kRange = 8192;
-  auto hanging = parallel_collect<HangingCorner>(
+
+  bool hangs(std::size_t corner) const { return slot_[corner] != kFree; }
+  std::span<const OctreeCorners::Share> operator[](std::size_t corner) const { return lists_[slot_[corner]].list(); }
+
+ private:
+  static constexpr std::size_t kAtOnce = 256;
+
+  /// The masters of a corner on a leaf of one level hang, if at all, on leaves of lower levels: those are known.
+  void find_shares(std::span<const HangingCorner> level, std::size_t first) {
+    const std::size_t pools = pools_.size(), more = (level.size() + kAtOnce - 1) / kAtOnce;
+    for (std::size_t k = 0; k < more; ++k) pools_.push_back(std::make_unique<Shares>());
+    parallel_for(
+        more,
+        [&](std::size_t k) {
+          for (std::size_t i = k * kAtOnce; i < std::min(level.size(), (k + 1) * kAtOnce); ++i)
+            lists_[first + i] = shares_of(level[i], *pools_[pools + k]);
+        },
+        Split::kSingly);
+    parallel_for(level.size(), [&](std::size_t i) { slot_[level[i].corner] = static_cast<std::uint32_t>(first + i); });
+  }
+
+  ShareList shares_of(const HangingCorner& h, Shares& pool) const {
+    const Masters masters = masters_of(corners_, numbers_, h);
+    const std::size_t first = pool.size();
+    const double weight = 1.0 / masters.count;
+    for (int m = 0; m < masters.count; ++m) {
+      const std::uint32_t master = masters.corner[m];
+      if (!hangs(master)) {
+        add_share(pool, first, master, weight);
+        continue;
+      }
+      for (const OctreeCorners::Share& s : (*this)[master]) add_share(pool, first, s.corner, weight * s.weight);
+    }
+    return {&pool, static_cast<std::uint32_t>(first), static_cast<std::uint32_t>(pool.size())};
+  }
+
+  const OctreeCorners& corners_;
+  const Numbering& numbers_;
+  std::vector<std::unique_ptr<Shares>> pools_;
+  RawVector<std::uint32_t> slot_;
+  RawVector<ShareList> lists_;
+};
+
+/// By the level of the leaf on which they hang.
+Buckets<HangingCorner> hanging_corners(const Octree& tree, const OctreeCorners& corners) {
+  constexpr std::size_t kRange = 1024;
+  const auto hanging = parallel_collect<HangingCorner, RawVector<HangingCorner>>(
       corners.size(), kRange, [&](std::size_t begin, std::size_t end, std::vector<HangingCorner>& found) {
         for (auto c = static_cast<std::uint32_t>(begin); c < end; ++c)
-          if (incident[c] < octants_inside(corners.position[c]))
+          if (corners.leaves[c].size() < static_cast<std::size_t>(octants_inside(corners.position[c])))
             found.push_back({c, larger_leaf_at(tree, corners.position[c])});
       });
-  // The masters of a corner on a leaf of level l hang, if at all, on leaves of lower levels.
-  std::stable_sort(hanging.begin(), hanging.end(),
-                   [](const HangingCorner& a, const HangingCorner& b) { return a.on.level() < b.on.level(); });
-  return hanging;
+  return {hanging.size(), OctreeKey::kMaxLevel + 1,
+          [&](std::size_t i, const auto& add) { add(static_cast<std::size_t>(hanging[i].on.level()), hanging[i]); }};
+}
+
+/// Writes them corner by corner.
+void set_shares(const ShareFinder& found, OctreeCorners& corners) {
+  corners.first_share.resize(corners.size() + 1);
+  const auto count = [&](std::size_t begin, std::size_t end) {
+    std::size_t sum = 0;
+    for (std::size_t c = begin; c < end; ++c)
+      if (found.hangs(c)) sum += found[c].size();
+    return sum;
+  };
+  const std::size_t all =
+      number_in_blocks(corners.size(), count, [&](std::size_t begin, std::size_t end, std::size_t at) {
+        for (std::size_t c = begin; c < end; ++c) {
+          corners.first_share[c] = static_cast<std::uint32_t>(at);
+          if (found.hangs(c)) at += found[c].size();
+        }
+        return at;
+      });
+  corners.first_share[corners.size()] = static_cast<std::uint32_t>(all);
+  corners.shares.resize(all);
+  parallel_for(corners.size(), [&](std::size_t c) {
+    if (found.hangs(c)) std::ranges::copy(found[c], corners.shares.begin() + corners.first_share[c]);
+  });
 }
 
 }  // namespace
 
-std::vector<std::array<double, 8>> OctreeCorners::at_leaves(const std::vector<double>& of_corner) const {
-  std::vector<std::array<double, 8>> result(of_leaf.size());
+RawVector<std::array<double, 8>> OctreeCorners::at_leaves(std::span<const double> of_corner) const {
+  RawVector<std::array<double, 8>> result(of_leaf.size());
   parallel_for(of_leaf.size(), [&](std::size_t l) {
     for (int k = 0; k < 8; ++k) result[l][k] = of_corner[of_leaf[l][k]];
   });
@@ -219,22 +284,9 @@ OctreeCorners octree_corners(const Octree& tree) {
   parallel_for(8 * tree.size(), [&](std::size_t i) {
     if (numbers.is_first(i)) corners.position[numbers.of_slot(i)] = numbers.position(i);
   });
-  const std::vector<HangingCorner> hanging = hanging_corners(tree, corners);
-  std::vector<std::uint32_t> slot(corners.size(), 0);
-  for (std::size_t i = 0; i < hanging.size(); ++i) slot[hanging[i].corner] = static_cast<std::uint32_t>(i + 1);
-  ShareLists lists;
-  lists.range.resize(hanging.size());
-  std::vector<Masters> masters(hanging.size());
-  parallel_for(hanging.size(), [&](std::size_t i) { masters[i] = masters_of(corners, numbers, hanging[i]); });
-  for (std::size_t i = 0; i < hanging.size(); ++i) find_shares(hanging[i], masters[i], slot, lists);
-  corners.first_share.reserve(corners.size() + 1);
-  for (std::uint32_t c = 0; c < corners.size(); ++c) {
-    corners.first_share.push_back(static_cast<std::uint32_t>(corners.shares.size()));
-    if (slot[c] == 0) continue;
-    const auto [begin, end] = lists.range[slot[c] - 1];
-    corners.shares.insert(corners.shares.end(), lists.pool.begin() + begin, lists.pool.begin() + end);
-  }
-  corners.first_share.push_back(static_cast<std::uint32_t>(corners.shares.size()));
+  corners.leaves = group_by_owner(corners.size(), static_cast<std::uint32_t>(8 * tree.size()),
+                                  [&](std::uint32_t i) { return corners.of_leaf[i / 8][i % 8]; });
+  set_shares(ShareFinder(corners, numbers, hanging_corners(tree, corners)), corners);
   return corners;
 }
 

@@ -1,11 +1,11 @@
 #pragma once
 
+#include "base/core/groups.h"
 #include "sizing/field/octree.h"
 
 #include <array>
 #include <cstdint>
 #include <span>
-#include <vector>
 
 namespace octafront {
 
@@ -19,10 +19,11 @@ struct OctreeCorners {
     std::uint32_t corner;  ///< a free corner
     double weight;
   };
-  std::vector<std::array<std::uint32_t, 8>> of_leaf;   ///< per leaf; number i has the halves of child i
-  std::vector<std::array<std::uint32_t, 3>> position;  ///< per corner, in units, 0 ... kSide
-  std::vector<std::uint32_t> first_share;              ///< per corner and one more; a free corner has none
-  std::vector<Share> shares;
+  RawVector<std::array<std::uint32_t, 8>> of_leaf;   ///< per leaf; number i has the halves of child i
+  RawVector<std::array<std::uint32_t, 3>> position;  ///< per corner, in units, 0 ... kSide
+  Groups<> leaves;                                   ///< of each corner, as 8 * leaf + which of its corners
+  RawVector<std::uint32_t> first_share;              ///< per corner and one more; a free corner has none
+  RawVector<Share> shares;
 
   std::size_t size() const { return position.size(); }
   bool hangs(std::uint32_t corner) const { return first_share[corner] != first_share[corner + 1]; }
@@ -30,7 +31,7 @@ struct OctreeCorners {
     return {shares.data() + first_share[corner], shares.data() + first_share[corner + 1]};
   }
   /// Per leaf what its corners have.
-  std::vector<std::array<double, 8>> at_leaves(const std::vector<double>& of_corner) const;
+  RawVector<std::array<double, 8>> at_leaves(std::span<const double> of_corner) const;
 };
 
 /// REQUIRES: tree.is_balanced(). Corners are numbered as the leaves meet them. O(leaves log leaves).

@@ -3,8 +3,22 @@
 #include "base/core/parallel.h"
 
 #include <algorithm>
+#include <cmath>
 
 namespace octafront {
+
+namespace {
+
+struct SizeRange {
+  double low = HUGE_VAL, high = -HUGE_VAL;
+
+  SizeRange& operator+=(const SizeRange& other) {
+    low = std::min(low, other.low), high = std::max(high, other.high);
+    return *this;
+  }
+};
+
+}  // namespace
 
 double OctreeField::at(Vec3 p, std::size_t l) const {
   const OctreeKey key = tree.leaf(l);
@@ -17,17 +31,17 @@ double OctreeField::at(Vec3 p, std::size_t l) const {
 }
 
 void OctreeField::find_range() {
-  low = high = h.front()[0];
-  for (const auto& leaf : h) {
-    for (const double v : leaf) {
-      low = std::min(low, v);
-      high = std::max(high, v);
-    }
-  }
+  const auto range = parallel_sum(h.size(), [this](std::size_t begin, std::size_t end) {
+    SizeRange part;
+    for (std::size_t l = begin; l < end; ++l)
+      for (const double v : h[l]) part += {v, v};
+    return part;
+  });
+  low = range.low, high = range.high;
 }
 
-std::vector<std::array<double, 8>> sizes_at_leaves(const SizeField& sizes, const RootCube& root, const Octree& tree) {
-  std::vector<std::array<double, 8>> h(tree.size());
+RawVector<std::array<double, 8>> sizes_at_leaves(const SizeField& sizes, const RootCube& root, const Octree& tree) {
+  RawVector<std::array<double, 8>> h(tree.size());
   parallel_for(h.size(), [&](std::size_t l) {
     const Vec3 lo = root.corner_of(tree.leaf(l));
     const double side = root.side_of(tree.leaf(l));

@@ -8,7 +8,6 @@
 #include "sizing/field/size_function.h"
 
 #include <array>
-#include <vector>
 
 namespace octafront {
 
@@ -16,9 +15,9 @@ namespace octafront {
 struct OctreeField final : SizeFunction {
   RootCube root;
   Octree tree;
-  std::vector<std::array<double, 8>> h;  ///< per leaf, corner i with the halves of child i; in units of root.side
+  RawVector<std::array<double, 8>> h;  ///< per leaf, corner i with the halves of child i; in units of root.side
   /// Of each of these the part that a source of size asked for; the rest is what it grew by on the way. May be empty.
-  std::vector<std::array<double, 8>> source;
+  RawVector<std::array<double, 8>> source;
   double low = 0, high = 0;  ///< least and greatest of h
 
   double at(Vec3 p) const override { return at(p, tree.find(root.cell(p))); }
@@ -30,11 +29,26 @@ struct OctreeField final : SizeFunction {
   void find_range();
 };
 
+/// Other sizes on the same leaves: of(l, k) at corner k of leaf l, in units of root.side. They have no sources.
+template <class Of>
+OctreeField with_sizes(const OctreeField& grid, const Of& of) {
+  OctreeField result;
+  result.root = grid.root;
+  result.gradation = grid.gradation;
+  result.tree = grid.tree;
+  result.h.resize(grid.h.size());
+  parallel_for(grid.h.size(), [&](std::size_t l) {
+    for (int k = 0; k < 8; ++k) result.h[l][k] = of(l, k);
+  });
+  result.find_range();
+  return result;
+}
+
 /// The field behind `sizes` if it is a background grid, else null.
 const OctreeField* as_octree_field(const SizeField& sizes);
 
 /// Sizes at the corners of leaves, in units of root.side, as OctreeField::h has them.
-std::vector<std::array<double, 8>> sizes_at_leaves(const SizeField& sizes, const RootCube& root, const Octree& tree);
+RawVector<std::array<double, 8>> sizes_at_leaves(const SizeField& sizes, const RootCube& root, const Octree& tree);
 
 /// Interpolation of eight corner values at local coordinates in [0, 1].
 inline double trilinear(const std::array<double, 8>& v, double x, double y, double z) {

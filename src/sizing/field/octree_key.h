@@ -81,20 +81,29 @@ class OctreeKey {
   /// True if `other` is this cell or lies inside it.
   constexpr bool contains(OctreeKey other) const { return range_min() <= other.id_ && other.id_ <= range_max(); }
 
-  /// The cell of the same level `dx, dy, dz` cells away; an invalid key (id 0) outside the root cube.
+  /// The cell of the same level `dx, dy, dz` cells away; an invalid key (id 0) outside the root cube. REQUIRES: each is
+  /// -1, 0 or 1.
   constexpr OctreeKey neighbour(int dx, int dy, int dz) const {
-    const std::array<std::uint32_t, 3> c = corner();
-    const std::int64_t s = side();
-    const std::int64_t x = c[0] + dx * s, y = c[1] + dy * s, z = c[2] + dz * s;
-    if (x < 0 || y < 0 || z < 0 || x >= kSide || y >= kSide || z >= kSide) return OctreeKey();
-    return containing(static_cast<std::uint32_t>(x), static_cast<std::uint32_t>(y), static_cast<std::uint32_t>(z),
-                      level());
+    // Digits are added where they lie: the bits of the other axes are filled, so that carries run over them.
+    std::uint64_t beside = marker();
+    const std::array<int, 3> steps{dx, dy, dz};
+    for (int axis = 0; axis < 3; ++axis) {
+      const std::uint64_t bits = kBitsOfX << axis, mine = id_ & ~marker() & bits, one = marker() << 1 << axis;
+      const std::uint64_t above = ((mine | ~bits) + one) & bits, below = (mine - one) & bits;
+      if (steps[axis] > 0 && above <= mine) return OctreeKey();
+      if (steps[axis] < 0 && below >= mine) return OctreeKey();
+      beside |= steps[axis] == 0 ? mine : steps[axis] > 0 ? above : below;
+    }
+    return OctreeKey(beside);
   }
 
   friend constexpr bool operator==(OctreeKey, OctreeKey) = default;
   friend constexpr auto operator<=>(OctreeKey, OctreeKey) = default;
 
  private:
+  /// Of the digits of all levels.
+  static constexpr std::uint64_t kBitsOfX = 0x492492492492492;  // 1, 4 ... 3 kMaxLevel - 2
+
   constexpr explicit OctreeKey(std::uint64_t id) : id_(id) {}
   constexpr std::uint64_t marker() const { return id_ & (0 - id_); }
   static constexpr std::uint64_t marker_of(int level) { return std::uint64_t{1} << (3 * (kMaxLevel - level)); }

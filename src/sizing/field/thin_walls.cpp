@@ -8,6 +8,7 @@
 #include <cmath>
 #include <iterator>
 #include <numbers>
+#include <numeric>
 
 namespace octafront {
 
@@ -44,21 +45,22 @@ constexpr double kSkipped = 1e-7;
 
 }  // namespace
 
-ThinWalls::Look ThinWalls::look(const std::vector<SurfacePiece>& pieces, const std::vector<double>& sizes,
+ThinWalls::Look ThinWalls::look(std::span<const SurfacePiece> pieces, std::span<const double> sizes,
                                 std::optional<std::size_t> triangles) const {
-  const auto squares = [&](std::size_t piece) { return length(pieces[piece].n) / (sizes[piece] * sizes[piece]); };
-  double all = 0;
-  for (std::size_t i = 0; i < pieces.size(); ++i) all += squares(i);
+  RawVector<double> squares(pieces.size());  // then those of all pieces up to each
+  parallel_for(pieces.size(), [&](std::size_t i) { squares[i] = length(pieces[i].n) / (sizes[i] * sizes[i]); });
+  std::partial_sum(squares.begin(), squares.end(), squares.begin());
+  const double all = squares.empty() ? 0 : squares.back();
   Look seen{{}, triangles ? static_cast<double>(*triangles) / all : kTrianglesPerSquare};
   const double step = all / kPlacesOfWalls;
   std::vector<Place>& looked_at = seen.places;
-  double passed = 0, next = 0.5 * step;
-  for (std::size_t i = 0; i < pieces.size(); ++i) {
-    passed += squares(i);
-    const auto count = std::ceil((passed - next) / step);
-    if (!(count > 0)) continue;
+  double next = 0.5 * step;
+  for (auto passed = squares.begin(); passed != squares.end(); ++passed) {
+    passed = std::upper_bound(passed, squares.end(), next);
+    if (passed == squares.end()) break;
+    const auto count = std::ceil((*passed - next) / step);
     next += count * step;
-    looked_at.push_back({i, count * step});
+    looked_at.push_back({static_cast<std::size_t>(passed - squares.begin()), count * step});
   }
   parallel_for(looked_at.size(), [&](std::size_t i) {
     const std::size_t k = looked_at[i].piece;
@@ -67,7 +69,7 @@ ThinWalls::Look ThinWalls::look(const std::vector<SurfacePiece>& pieces, const s
   return seen;
 }
 
-double ThinWalls::excess_tets(const std::vector<SurfacePiece>& pieces, const std::vector<double>& sizes,
+double ThinWalls::excess_tets(std::span<const SurfacePiece> pieces, std::span<const double> sizes,
                               std::optional<std::size_t> triangles) const {
   const Look seen = look(pieces, sizes, triangles);
   const bool are_coarse = seen.triangles_per_square < kCoarse * kTrianglesPerSquare;
@@ -80,7 +82,7 @@ double ThinWalls::excess_tets(const std::vector<SurfacePiece>& pieces, const std
   return excess;
 }
 
-double ThinWalls::tets_through(const std::vector<SurfacePiece>& pieces, const std::vector<double>& sizes,
+double ThinWalls::tets_through(std::span<const SurfacePiece> pieces, std::span<const double> sizes,
                                std::optional<std::size_t> triangles) const {
   const Look seen = look(pieces, sizes, triangles);
   double through = 0;

@@ -4,6 +4,7 @@
 #include "sizing/field/inside_fraction.h"
 
 #include <optional>
+#include <span>
 #include <vector>
 
 namespace octafront {
@@ -26,10 +27,10 @@ class ThinWalls {
   /// How many elements more than the integral of kTetsPerCube / h^3 over the volume these walls will have; below 0:
   /// fewer. `pieces`: the surface, as surface_pieces() leaves it; `sizes`: the size at each of them; `triangles`: how
   /// many the surface has, if it is made by these sizes already. Looks at some thousand places.
-  double excess_tets(const std::vector<SurfacePiece>& pieces, const std::vector<double>& sizes,
+  double excess_tets(std::span<const SurfacePiece> pieces, std::span<const double> sizes,
                      std::optional<std::size_t> triangles) const;
   /// How many elements reach from one side of a wall to the other.
-  double tets_through(const std::vector<SurfacePiece>& pieces, const std::vector<double>& sizes,
+  double tets_through(std::span<const SurfacePiece> pieces, std::span<const double> sizes,
                       std::optional<std::size_t> triangles) const;
 
  private:
@@ -42,7 +43,7 @@ class ThinWalls {
     std::vector<Place> places;
     double triangles_per_square;
   };
-  Look look(const std::vector<SurfacePiece>& pieces, const std::vector<double>& sizes,
+  Look look(std::span<const SurfacePiece> pieces, std::span<const double> sizes,
             std::optional<std::size_t> triangles) const;
   double thickness(Vec3 p, Vec3 normal, double reach) const;
 

@@ -92,12 +92,8 @@ Raised raised_to_count(const SurfaceMesh& surface, const WantedSizes& wanted, co
 constexpr int kFloorSteps = 8;
 
 /// The sizes of `grid` raised to a floor, but not above `most`.
-OctreeField raised_grid(const OctreeField& grid, const std::vector<std::array<double, 8>>& most, double floor) {
-  OctreeField result = grid;
-  for (std::size_t l = 0; l < result.h.size(); ++l)
-    for (int k = 0; k < 8; ++k) result.h[l][k] = std::max(result.h[l][k], std::min(most[l][k], floor));
-  result.find_range();
-  return result;
+OctreeField raised_grid(const OctreeField& grid, const RawVector<std::array<double, 8>>& most, double floor) {
+  return with_sizes(grid, [&](std::size_t l, int k) { return std::max(grid.h[l][k], std::min(most[l][k], floor)); });
 }
 
 }  // namespace
@@ -156,6 +152,7 @@ WithinCount within_count(const SizeField& finer, const SizeField& first, const T
     (expected_here(raised_grid(*grid, most_sizes, elementary::exp(floor))) > most ? low : high) = floor;
   }
   auto coarser = std::make_shared<OctreeField>(raised_grid(*grid, most_sizes, elementary::exp(high)));
+  coarser->source = parallel_copy(grid->source);
   grade_again(*coarser, context);
   return {SizeField(SizeFunction::field(std::move(coarser))), asked, elementary::exp(high) * grid->root.side};
 }

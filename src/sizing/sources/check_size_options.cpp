@@ -3,8 +3,8 @@
 #include <octafront/error.h>
 #include <octafront/option_table.h>
 
+#include "base/core/index_range.h"
 #include "base/core/wording.h"
-#include "base/mesh/index_range.h"
 #include "sizing/field/octree_field.h"
 #include "sizing/sources/sizes_in_space.h"
 

@@ -58,14 +58,15 @@ class CurvatureFinder {
     normal_.resize(faces);
     center_.resize(faces);
     own_.resize(faces);
-    for (std::size_t f = 0; f < faces; ++f) {
+    parallel_for(faces, [&](std::size_t f) {
       const auto [a, b, c] = corners(f);
       const Vec3 n = double_area_normal(a, b, c);
+      own_[f] = {};
       own_[f].area = 0.5 * length(n);
       normal_[f] = normalized(n);
       center_[f] = centroid(a, b, c);
-    }
-    for (std::size_t f = 0; f < faces; ++f) add_edges(f);
+    });
+    parallel_for(faces, [&](std::size_t f) { add_edges(f); });
   }
 
   SurfaceCurvature run(const RunContext& context) {
@@ -73,9 +74,9 @@ class CurvatureFinder {
     SurfaceCurvature result;
     result.largest.assign(faces, -1);
     result.sum.assign(faces, 0);
-    const std::vector<std::uint32_t> order = along_the_curve();
+    const RawVector<std::uint32_t> order = along_the_curve();
     block_.resize(faces);
-    for (std::size_t i = 0; i < faces; ++i) block_[order[i]] = static_cast<std::uint32_t>(i / kFacesPerBlock);
+    parallel_for(faces, [&](std::size_t i) { block_[order[i]] = static_cast<std::uint32_t>(i / kFacesPerBlock); });
     PerThread<Ball> balls;
     const std::size_t blocks = (faces + kFacesPerBlock - 1) / kFacesPerBlock;
     parallel_for(blocks, [&](std::size_t b) {
@@ -94,13 +95,20 @@ class CurvatureFinder {
     std::vector<std::uint32_t> visited_by, faces;
   };
 
-  std::vector<std::uint32_t> along_the_curve() const {
+  RawVector<std::uint32_t> along_the_curve() const {
+    struct Place {
+      OctreeKey cell;
+      std::uint32_t face;
+      auto operator<=>(const Place&) const = default;
+    };
     const RootCube root = RootCube::around(bounding_box(surface_.points), 0);
-    std::vector<std::pair<std::uint64_t, std::uint32_t>> keys;
-    for (std::uint32_t f = 0; f < center_.size(); ++f) keys.push_back({root.cell(center_[f]).id(), f});
-    std::sort(keys.begin(), keys.end());
-    std::vector<std::uint32_t> order;
-    for (const auto& [key, f] : keys) order.push_back(f);
+    RawVector<Place> places(center_.size());
+    parallel_for(places.size(), [&](std::size_t f) {
+      places[f] = {root.cell(center_[f]), static_cast<std::uint32_t>(f)};
+    });
+    parallel_sort(places);
+    RawVector<std::uint32_t> order(places.size());
+    parallel_for(order.size(), [&](std::size_t i) { order[i] = places[i].face; });
     return order;
   }
 
@@ -160,9 +168,9 @@ class CurvatureFinder {
 
   const SurfaceMesh& surface_;
   const FaceNeighbours& across_;
-  std::vector<Vec3> normal_, center_;
-  std::vector<TensorSum> own_;
-  std::vector<std::uint32_t> block_;
+  RawVector<Vec3> normal_, center_;
+  RawVector<TensorSum> own_;
+  RawVector<std::uint32_t> block_;
 };
 
 /// The centroid of an equilateral triangle with its corners on a sphere of curvature k lies k h^2 / 6 below it.
@@ -178,15 +186,17 @@ SurfaceCurvature curvature_between_features(const KnownSurface& known, const Run
 
 FaceNeighbours smooth_face_neighbours(const EdgeTable& table, const std::vector<Edge>& features) {
   FaceNeighbours across(table.half_edges.size() / 3, {kNone, kNone, kNone});
-  auto feature = features.begin();
-  for (std::size_t e = 0; e < table.size(); ++e) {
-    while (feature != features.end() && *feature < table.edges[e]) ++feature;
-    const bool is_feature = feature != features.end() && *feature == table.edges[e];
-    if (table.uses(e).size() != 2 || is_feature) continue;
-    const HalfEdge g = table.uses(e)[0], h = table.uses(e)[1];
-    across[g / 3][g % 3] = h / 3;
-    across[h / 3][h % 3] = g / 3;
-  }
+  parallel_ranges(table.size(), Split::kAdaptive, [&](std::size_t begin, std::size_t end) {
+    auto feature = std::lower_bound(features.begin(), features.end(), table.edges[begin]);
+    for (std::size_t e = begin; e < end; ++e) {
+      while (feature != features.end() && *feature < table.edges[e]) ++feature;
+      const bool is_feature = feature != features.end() && *feature == table.edges[e];
+      if (table.uses(e).size() != 2 || is_feature) continue;
+      const HalfEdge g = table.uses(e)[0], h = table.uses(e)[1];
+      across[g / 3][g % 3] = h / 3;
+      across[h / 3][h % 3] = g / 3;
+    }
+  });
   return across;
 }
 

@@ -55,18 +55,24 @@ std::uint64_t GapFinder::neighbourhood(const PlaceOnSurface& place) const {
 }
 
 void GapFinder::measure_middles(const SurfaceMesh& surface) {
-  std::vector<PlaceOnSurface> first;
-  for (std::uint32_t f = 0; f < surface.triangles.size(); ++f) {
+  const auto middle = [&](std::size_t f) {
     const auto& [a, b, c] = surface.triangles[f];
-    const PlaceOnSurface place{centroid(surface.points[a], surface.points[b], surface.points[c]), normal_[f], f};
-    double& width = known_.find_or_add(neighbourhood(place), kUnknown);
+    return PlaceOnSurface{centroid(surface.points[a], surface.points[b], surface.points[c]), normal_[f],
+                          static_cast<std::uint32_t>(f)};
+  };
+  RawVector<std::uint64_t> around(surface.triangles.size());
+  parallel_for(around.size(), [&](std::size_t f) { around[f] = neighbourhood(middle(f)); });
+  std::vector<std::uint32_t> first;
+  for (std::size_t f = 0; f < around.size(); ++f) {
+    if (f > 0 && around[f] == around[f - 1]) continue;
+    double& width = known_.find_or_add(around[f], kUnknown);
     if (width != kUnknown) continue;
     width = kOpen;
-    first.push_back(place);
+    first.push_back(static_cast<std::uint32_t>(f));
   }
   std::vector<double> widths(first.size());
-  parallel_for(first.size(), [&](std::size_t i) { widths[i] = measure(first[i]); });
-  for (std::size_t i = 0; i < first.size(); ++i) *known_.find(neighbourhood(first[i])) = widths[i];
+  parallel_for(first.size(), [&](std::size_t i) { widths[i] = measure(middle(first[i])); });
+  for (std::size_t i = 0; i < first.size(); ++i) *known_.find(around[first[i]]) = widths[i];
 }
 
 double GapFinder::width(const PlaceOnSurface& place) {

@@ -125,12 +125,12 @@ SizeField size_field_of_surface(const KnownSurface& known, const SizeOptions& op
   const std::vector<SizeSample> inside = samples_inside(known, in_space, floor, stage.context());
   points.insert(points.end(), inside.begin(), inside.end());
   const auto samples_of = [&](const std::vector<double>& sizes) {
-    std::vector<SizeSample> samples = sample_surface(surface, sizes, at_place, stage.context());
+    RawVector<SizeSample> samples = sample_surface(surface, sizes, at_place, stage.context());
     samples.insert(samples.end(), points.begin(), points.end());
     return samples;
   };
   GridRules rules = grid_rules(options, std::min(options.max_size.value_or(HUGE_VAL), options.size.value_or(HUGE_VAL)));
-  std::vector<SizeSample> samples = samples_of(face);
+  RawVector<SizeSample> samples = samples_of(face);
   const auto shortfall_at = [&](double gradation) {
     GridRules coarse = rules;
     coarse.gradation = gradation;

@@ -53,15 +53,10 @@ OctreeField with_scaled_sources(const OctreeField& grid, double factor, const Si
                high = options.max_size.value_or(HUGE_VAL) / grid.root.side;
   const bool is_flat = options.interior == SizeOptions::Interior::kUniform;
   const double ceiling = is_flat ? std::clamp(grid.high * factor, low, high) : HUGE_VAL;
-  OctreeField result = grid;
-  parallel_for(grid.h.size(), [&](std::size_t l) {
-    for (int k = 0; k < 8; ++k) {
-      const double source = grid.source[l][k], growth = grid.h[l][k] - source;
-      result.h[l][k] = std::min(ceiling, std::clamp(source * factor, low, high) + growth);
-    }
+  return with_sizes(grid, [&](std::size_t l, int k) {
+    const double source = grid.source[l][k], growth = grid.h[l][k] - source;
+    return std::min(ceiling, std::clamp(source * factor, low, high) + growth);
   });
-  result.find_range();
-  return result;
 }
 
 /// The slope of counts over a factor on all sources, on the way to a number that is larger by `more`, a logarithm.

@@ -9,8 +9,8 @@
 #include "base/mesh/complex.h"
 #include "base/places/places.h"
 #include "sizing/field/affordable.h"
+#include "sizing/field/mesh_sizes.h"
 #include "sizing/field/octree.h"
-#include "sizing/sources/mesh_sizes.h"
 
 #include <algorithm>
 #include <cmath>

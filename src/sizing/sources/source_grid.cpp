@@ -1,5 +1,6 @@
 #include "sizing/sources/source_grid.h"
 
+#include "base/core/parallel.h"
 #include "sizing/field/affordable.h"
 #include "sizing/field/grid_caps.h"
 
@@ -16,12 +17,11 @@ namespace {
 constexpr double kPlainSamples = 64;
 
 /// Where one size holds everywhere the grid has a plain level of leaves, and samples need be no denser than these.
-std::vector<SizeSample> even_samples(const SurfaceMesh& surface, double h, const RootCube& root,
-                                     const RunContext& context) {
+RawVector<SizeSample> even_samples(const SurfaceMesh& surface, double h, const RootCube& root,
+                                   const RunContext& context) {
   const double spacing = std::max(h, root.side / kPlainSamples);
-  std::vector<SizeSample> samples =
-      sample_surface(surface, std::vector<double>(surface.triangles.size(), spacing), {}, context);
-  for (SizeSample& s : samples) s.h = h;
+  auto samples = sample_surface(surface, std::vector<double>(surface.triangles.size(), spacing), {}, context);
+  parallel_for(samples.size(), [&](std::size_t i) { samples[i].h = h; });
   return samples;
 }
 
@@ -64,9 +64,9 @@ SizeField source_grid(const SurfaceMesh& surface, const WantedSizes& wanted, con
   GridRules rules = grid_rules(options, wanted.ceiling);
   rules.leaf_per_size *= look.coarser;
   rules.keep_sources = rules.keep_sources || look.keeps_sources;
-  std::vector<SizeSample> samples = wanted.even && !rules.resolve_surface
-                                        ? even_samples(surface, wanted.face.front(), root, context)
-                                        : sample_surface(surface, wanted.face, wanted.at_place, context);
+  RawVector<SizeSample> samples = wanted.even && !rules.resolve_surface
+                                      ? even_samples(surface, wanted.face.front(), root, context)
+                                      : sample_surface(surface, wanted.face, wanted.at_place, context);
   samples.insert(samples.end(), wanted.points.begin(), wanted.points.end());
   auto grid = make_background_grid(root, samples, rules, context);
   return SizeFunction::field(with_regions(std::move(grid), options, context));

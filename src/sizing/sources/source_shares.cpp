@@ -64,10 +64,10 @@ std::string percent(double part) {
 
 }  // namespace
 
-std::vector<SourceShares::Place> SourceShares::places_on(const SurfaceMesh& surface) {
+RawVector<SourceShares::Place> SourceShares::places_on(const SurfaceMesh& surface) {
+  constexpr std::size_t kFaces = 512;
   const double whole = area(surface);
-  std::vector<Place> places;
-  for (std::uint32_t f = 0; f < surface.triangles.size(); ++f) {
+  const auto add_places = [&](std::uint32_t f, std::vector<Place>& places) {
     const auto& [i, j, k] = surface.triangles[f];
     const Vec3 a = surface.points[i], b = surface.points[j], c = surface.points[k], n = unit_normal(a, b, c);
     const double area = triangle_area(surface.points, surface.triangles[f]);
@@ -81,8 +81,12 @@ std::vector<SourceShares::Place> SourceShares::places_on(const SurfaceMesh& surf
         add(3 * u + 1, 3 * v + 1);
         if (u + v + 1 < parts) add(3 * u + 2, 3 * v + 2);
       }
-  }
-  return places;
+  };
+  return parallel_collect<Place, RawVector<Place>>(surface.triangles.size(), kFaces,
+                                                   [&](std::size_t begin, std::size_t end, std::vector<Place>& places) {
+                                                     for (std::size_t f = begin; f < end; ++f)
+                                                       add_places(static_cast<std::uint32_t>(f), places);
+                                                   });
 }
 
 std::uint8_t SourceShares::number_of(const std::string& name) {
@@ -120,19 +124,19 @@ SourceShares::Asked SourceShares::least_at(const Place& place, const std::vector
   return least;
 }
 
-std::vector<SourceShares::Asked> SourceShares::least_at_all(const std::vector<Place>& places,
-                                                            const std::vector<double>& face) const {
-  std::vector<Asked> asked(places.size());
+RawVector<SourceShares::Asked> SourceShares::least_at_all(const RawVector<Place>& places,
+                                                          const std::vector<double>& face) const {
+  RawVector<Asked> asked(places.size());
   // What is asked in batches is asked for all places at once.
   const bool is_batched = std::ranges::any_of(places_, [](const AtPlace& s) { return s.at.batched != nullptr; });
   if (!is_batched) {
     // Places of one triangle are asked for by one thread: see GapFinder::width().
-    std::vector<std::size_t> first;
-    for (std::size_t i = 0; i < places.size(); ++i)
-      if (i == 0 || places[i].on.face != places[i - 1].on.face) first.push_back(i);
-    first.push_back(places.size());
-    parallel_for(first.size() - 1, [&](std::size_t k) {
-      for (std::size_t i = first[k]; i < first[k + 1]; ++i) asked[i] = least_at(places[i], face);
+    const auto is_first = [&](std::size_t i) { return i == 0 || places[i].on.face != places[i - 1].on.face; };
+    parallel_ranges(places.size(), Split::kAdaptive, [&](std::size_t begin, std::size_t end) {
+      while (begin < end && !is_first(begin)) ++begin;
+      if (begin == end) return;
+      for (std::size_t i = begin; i < end || (i < places.size() && !is_first(i)); ++i)
+        asked[i] = least_at(places[i], face);
     });
     return asked;
   }
@@ -146,8 +150,8 @@ std::vector<SourceShares::Asked> SourceShares::least_at_all(const std::vector<Pl
 std::vector<SourceShares::Part> SourceShares::part_of_each(const SurfaceMesh& surface, const std::vector<double>& face,
                                                            const SizeField& field, const SizeOptions& options,
                                                            double factor) const {
-  const std::vector<Place> places = places_on(surface);
-  const std::vector<Asked> asked = least_at_all(places, face);
+  const RawVector<Place> places = places_on(surface);
+  const RawVector<Asked> asked = least_at_all(places, face);
   std::vector<double> least_of(names_.size(), HUGE_VAL);
   for (const Asked& a : asked) least_of[a.source] = std::min(least_of[a.source], a.size);
   // Smaller sizes nearby that one source alone asks for are its own, where it is asked here, too.
@@ -157,8 +161,8 @@ std::vector<SourceShares::Part> SourceShares::part_of_each(const SurfaceMesh& su
     return least_of[here.source] <= came_out / kNearby && options.regions.empty();
   };
   const Affordable affordable(surface, options);
-  std::vector<std::uint16_t> by(places.size());
-  std::vector<double> elements(places.size());
+  RawVector<std::uint16_t> by(places.size());
+  RawVector<double> elements(places.size());
   parallel_for(places.size(), [&](std::size_t i) {
     const double came_out = field.at(places[i].on.p) / factor;
     elements[i] = affordable.tets_behind(places[i].area, came_out);

@@ -49,9 +49,9 @@ class SourceShares {
     double size;
     std::uint8_t source;
   };
-  static std::vector<Place> places_on(const SurfaceMesh& surface);
+  static RawVector<Place> places_on(const SurfaceMesh& surface);
   Asked least_at(const Place& place, const std::vector<double>& face) const;
-  std::vector<Asked> least_at_all(const std::vector<Place>& places, const std::vector<double>& face) const;
+  RawVector<Asked> least_at_all(const RawVector<Place>& places, const std::vector<double>& face) const;
   std::uint8_t number_of(const std::string& name);
   /// What each source asks for, in parts of all.
   struct Part {

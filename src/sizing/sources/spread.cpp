@@ -23,16 +23,11 @@ constexpr double kCoarserToJudge = 2;
 
 /// About the field of this gradation, on the leaves of one of kDefaultGradation.
 OctreeField rising_by(const OctreeField& grid, double gradation) {
-  OctreeField result = grid;
   const double steeper = gradation / kDefaultGradation;
-  parallel_for(grid.h.size(), [&](std::size_t l) {
-    for (int k = 0; k < 8; ++k) {
-      const double source = grid.source[l][k];
-      result.h[l][k] = std::min(grid.high, source + (grid.h[l][k] - source) * steeper);
-    }
+  return with_sizes(grid, [&](std::size_t l, int k) {
+    const double source = grid.source[l][k];
+    return std::min(grid.high, source + (grid.h[l][k] - source) * steeper);
   });
-  result.find_range();
-  return result;
 }
 
 }  // namespace

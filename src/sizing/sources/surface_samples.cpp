@@ -3,7 +3,7 @@
 #include <octafront/error.h>
 #include <octafront/surface_mesh.h>
 
-#include "base/core/parallel.h"
+#include "base/core/parallel_arrays.h"
 #include "base/geometry/measures.h"
 #include "base/geometry/needle.h"
 
@@ -24,7 +24,7 @@ constexpr double kReachOfEdge = 0.6;
 /// Triangles that are sampled together, by one thread or for one batch of sizes.
 constexpr std::size_t kFacesAtOnce = 4096;
 /// Few triangles are large ones, with many samples each: they are divided among threads too.
-constexpr std::size_t kLeastRanges = 64;
+constexpr std::size_t kLeastRanges = 256;
 
 /// Strips are sampled at longer steps where all samples, as far as the sizes of faces foretell them, would be more.
 constexpr double kManySamples = 1e5;
@@ -32,21 +32,20 @@ constexpr double kLongestStep = 64;
 
 /// How many times as long as its size may be what one sample stands for, if it is as many times narrower.
 double step_on_strips(const SurfaceMesh& surface, const std::vector<double>& face_size, double spacing) {
-  double count = 0;
-  for (std::size_t f = 0; f < face_size.size(); ++f) {
+  const double count = sum_in_order(face_size.size(), [&](std::size_t f) {
     const auto [i, j, k] = surface.triangles[f];
     const Vec3 a = surface.points[i], b = surface.points[j], c = surface.points[k];
     const double longest =
         std::sqrt(std::max({squared_distance(a, b), squared_distance(b, c), squared_distance(c, a)}));
-    count += longest / std::min(face_size[f], spacing);
-  }
+    return longest / std::min(face_size[f], spacing);
+  });
   return std::clamp(count / kManySamples, 1.0, kLongestStep);
 }
 
+template <class Samples>
 class Sampler {
  public:
-  Sampler(const std::vector<double>& face_size, const SizeAtPlace& size_at, double step,
-          std::vector<SizeSample>& samples)
+  Sampler(const std::vector<double>& face_size, const SizeAtPlace& size_at, double step, Samples& samples)
       : face_size_(face_size), size_at_(size_at), step_(step), samples_(samples) {}
 
   void sample(Vec3 a, Vec3 b, Vec3 c, Vec3 n, std::uint32_t face) {
@@ -116,7 +115,7 @@ class Sampler {
   const std::vector<double>& face_size_;
   const SizeAtPlace& size_at_;
   double step_;
-  std::vector<SizeSample>& samples_;
+  Samples& samples_;
 };
 
 }  // namespace
@@ -154,7 +153,8 @@ bool BatchedSizes::fetch() {
 namespace {
 
 /// The samples of some triangles, behind those that there are.
-void sample_faces(const SurfaceMesh& surface, Sampler sampler, std::size_t begin, std::size_t end) {
+template <class Samples>
+void sample_faces(const SurfaceMesh& surface, Sampler<Samples> sampler, std::size_t begin, std::size_t end) {
   for (std::size_t f = begin; f < end; ++f) {
     const Triangle& t = surface.triangles[f];
     const Vec3 a = surface.points[t[0]], b = surface.points[t[1]], c = surface.points[t[2]];
@@ -163,9 +163,9 @@ void sample_faces(const SurfaceMesh& surface, Sampler sampler, std::size_t begin
 }
 
 // Each round knows the sizes of one more level of halves.
-std::vector<SizeSample> sample_in_batches(const SurfaceMesh& surface, const std::vector<double>& face_size,
-                                          const SizeAtPlace& size_at, double step, const RunContext& context) {
-  std::vector<SizeSample> samples;
+RawVector<SizeSample> sample_in_batches(const SurfaceMesh& surface, const std::vector<double>& face_size,
+                                        const SizeAtPlace& size_at, double step, const RunContext& context) {
+  RawVector<SizeSample> samples;
   for (std::size_t begin = 0; begin < surface.triangles.size(); begin += kFacesAtOnce) {
     const std::size_t finished = samples.size(), end = std::min(surface.triangles.size(), begin + kFacesAtOnce);
     do {
@@ -185,13 +185,13 @@ SizeAtPlace least_of(const SizeAtPlace& a, const SizeAtPlace& b) {
           a.batched ? a.batched : b.batched, std::min(a.spacing, b.spacing)};
 }
 
-std::vector<SizeSample> sample_surface(const SurfaceMesh& surface, const std::vector<double>& face_size,
-                                       const SizeAtPlace& size_at, const RunContext& context) {
+RawVector<SizeSample> sample_surface(const SurfaceMesh& surface, const std::vector<double>& face_size,
+                                     const SizeAtPlace& size_at, const RunContext& context) {
   const double step = step_on_strips(surface, face_size, size_at.spacing);
   if (size_at.batched) return sample_in_batches(surface, face_size, size_at, step, context);
   std::atomic<std::size_t> total{0};
   const std::size_t range = std::clamp<std::size_t>(surface.triangles.size() / kLeastRanges, 1, kFacesAtOnce);
-  std::vector<SizeSample> samples = parallel_collect<SizeSample>(
+  auto samples = parallel_collect<SizeSample, RawVector<SizeSample>>(
       surface.triangles.size(), range, [&](std::size_t begin, std::size_t end, std::vector<SizeSample>& part) {
         context.check();
         if (total > kMostSamples) return;

@@ -2,6 +2,7 @@
 
 #include <octafront/run_context.h>
 
+#include "base/core/raw_vector.h"
 #include "sizing/field/background_grid.h"
 
 #include <cstdint>
@@ -64,7 +65,7 @@ SizeAtPlace least_of(const SizeAtPlace& a, const SizeAtPlace& b);
 /// triangle; `size_at`, which may be empty, may ask for less at a place. Of surfaces with very many samples on long and
 /// narrow triangles, one stands for a longer part of these. Throws OptionError if more than 50 million
 /// samples were needed.
-std::vector<SizeSample> sample_surface(const SurfaceMesh& surface, const std::vector<double>& face_size,
-                                       const SizeAtPlace& size_at, const RunContext& context);
+RawVector<SizeSample> sample_surface(const SurfaceMesh& surface, const std::vector<double>& face_size,
+                                     const SizeAtPlace& size_at, const RunContext& context);
 
 }  // namespace octafront

@@ -1,5 +1,6 @@
 #include "sizing/sources/wanted_sizes.h"
 
+#include "base/core/parallel.h"
 #include "base/geometry/measures.h"
 #include "sizing/field/affordable.h"
 #include "sizing/sources/curvature.h"
@@ -294,7 +295,7 @@ bool has_no_size_source(const SizeOptions& o) {
 
 WantedSizes WantedSizes::with(const std::function<double(double)>& change) const {
   WantedSizes result = *this;
-  for (double& h : result.face) h = change(h);
+  parallel_for(result.face.size(), [&](std::size_t f) { result.face[f] = change(result.face[f]); });
   for (SizeSample& s : result.points) s.h = change(s.h);
   result.ceiling = change(result.ceiling);
   if (at_place) result.at_place.at = [f = at_place.at, change](const PlaceOnSurface& p) { return change(f(p)); };

@@ -4,10 +4,10 @@
 #include <octafront/surface_mesh.h>
 
 #include "base/core/elementary.h"
+#include "base/core/renumber.h"
 #include "base/core/wording.h"
 #include "base/geometry/predicates.h"
 #include "base/geometry/self_intersection.h"
-#include "base/mesh/renumber.h"
 #include "soup/arrangement/divide.h"
 #include "soup/arrangement/snap.h"
 

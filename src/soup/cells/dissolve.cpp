@@ -1,9 +1,9 @@
 #include "soup/cells/dissolve.h"
 
+#include "base/core/renumber.h"
 #include "base/geometry/measures.h"
 #include "base/geometry/predicates.h"
 #include "base/geometry/self_intersection.h"
-#include "base/mesh/renumber.h"
 
 #include <algorithm>
 #include <optional>

@@ -1,8 +1,8 @@
 #include "soup/cells/labelled.h"
 
+#include "base/core/renumber.h"
 #include "base/core/utf8.h"
 #include "base/core/wording.h"
-#include "base/mesh/renumber.h"
 
 #include <algorithm>
 #include <utility>

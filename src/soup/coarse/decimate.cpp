@@ -4,9 +4,9 @@
 #include "base/core/elementary.h"
 #include "base/core/groups.h"
 #include "base/core/parallel.h"
+#include "base/geometry/blocks.h"
 #include "base/geometry/measures.h"
 #include "base/geometry/self_intersection.h"
-#include "base/shared/blocks.h"
 #include "soup/coarse/decimate_piece.h"
 
 #include <algorithm>

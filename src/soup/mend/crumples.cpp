@@ -321,7 +321,7 @@ class Crumples {
   double tolerance_;
   Ring ring_;
   const EdgeTable edges_;
-  const std::vector<std::uint32_t> edge_of_;
+  const RawVector<std::uint32_t> edge_of_;
   Pairs pairs_;                                            ///< that cross
   std::unordered_map<std::uint32_t, Triangles> partners_;  ///< what each of them crosses
   std::vector<char> taken_;                                ///< per triangle: in one of those found

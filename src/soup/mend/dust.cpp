@@ -1,9 +1,9 @@
 #include "soup/mend/dust.h"
 
+#include "base/core/renumber.h"
 #include "base/geometry/measures.h"
 #include "base/geometry/predicates.h"
 #include "base/mesh/edge_table.h"
-#include "base/mesh/renumber.h"
 
 #include <algorithm>
 #include <array>
@@ -183,7 +183,7 @@ class DustPass {
   SurfaceMesh& surface_;
   double reach_;
   EdgeTable edges_;
-  std::vector<std::uint32_t> edge_of_;       ///< per half-edge
+  RawVector<std::uint32_t> edge_of_;         ///< per half-edge
   std::vector<std::uint32_t> first_, fans_;  ///< the triangles around each vertex
   std::vector<char> is_touched_;             ///< per vertex, by this pass
   std::vector<char> is_gone_;                ///< per triangle

@@ -1,11 +1,11 @@
 #include "soup/mend/lattice_skin.h"
 
 #include "base/core/disjoint_sets.h"
+#include "base/core/renumber.h"
 #include "base/core/stage.h"
 #include "base/geometry/measures.h"
 #include "base/geometry/triangle_tree.h"
 #include "base/mesh/features.h"
-#include "base/mesh/renumber.h"
 #include "fill/lattice/cut_lattice.h"
 #include "fill/lattice/lattice_octree.h"
 #include "fill/lattice/manifold.h"

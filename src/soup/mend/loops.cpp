@@ -98,7 +98,7 @@ class Tracer {
 
   std::span<const Triangle> triangles_;
   const EdgeTable& table_;
-  std::vector<std::uint32_t> edge_of_;
+  RawVector<std::uint32_t> edge_of_;
   std::vector<HalfEdge> next_;
 };
 

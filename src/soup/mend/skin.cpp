@@ -1,7 +1,7 @@
 #include "soup/mend/skin.h"
 
+#include "base/core/renumber.h"
 #include "base/geometry/measures.h"
-#include "base/mesh/renumber.h"
 #include "soup/mend/whole_faces.h"
 
 namespace octafront::mend {

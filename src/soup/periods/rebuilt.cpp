@@ -2,7 +2,7 @@
 
 #include <octafront/mend.h>
 
-#include "base/mesh/renumber.h"
+#include "base/core/renumber.h"
 
 #include <algorithm>
 #include <string>

@@ -69,7 +69,7 @@ void orient_sheets(Draft& draft) {
   SurfaceMesh& mesh = draft.mesh;
   const EdgeTable& table = draft.edges();
   const auto is_sheet = [&](std::uint32_t t) { return mesh.sides[t][0] == mesh.sides[t][1]; };
-  const std::vector<std::uint32_t> edge_of = table.edge_of_half_edge();
+  const RawVector<std::uint32_t> edge_of = table.edge_of_half_edge();
   std::vector<char> seen(mesh.triangles.size(), 0), turn(mesh.triangles.size(), 0);
   std::vector<std::uint32_t> stack;
   for (std::uint32_t seed = 0; seed < seen.size(); ++seed) {

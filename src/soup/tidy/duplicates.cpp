@@ -1,4 +1,5 @@
 #include "base/core/disjoint_sets.h"
+#include "base/core/parallel.h"
 #include "soup/tidy/steps.h"
 
 #include <algorithm>
@@ -27,28 +28,34 @@ bool is_first_edge(const Triangle& t, const Edge& edge) {
   return edge == Edge{sorted[0], sorted[1]};
 }
 
+void find_groups_at(const std::vector<Triangle>& triangles, const EdgeTable& table, std::size_t e,
+                    std::vector<std::pair<VertexIndex, std::uint32_t>>& seen, std::vector<Group>& groups) {
+  if (table.uses(e).size() < 2) return;
+  seen.clear();
+  for (const std::uint32_t h : table.uses(e))
+    if (is_first_edge(triangles[h / 3], table.edges[e]))
+      seen.push_back({apex(triangles[h / 3], table.edges[e]), h / 3});
+  std::sort(seen.begin(), seen.end());
+  for (std::size_t i = 0; i + 1 < seen.size();) {
+    std::size_t end = i + 1;
+    while (end < seen.size() && seen[end].first == seen[i].first) ++end;
+    if (end - i > 1) {
+      groups.emplace_back();
+      for (std::size_t k = i; k < end; ++k) groups.back().triangles.push_back(seen[k].second);
+    }
+    i = end;
+  }
+}
+
 /// Triangles with the same three vertices share their first edge, and their apex seen from there.
 std::vector<Group> find_groups(const std::vector<Triangle>& triangles, const EdgeTable& table) {
-  std::vector<Group> groups;
-  std::vector<std::pair<VertexIndex, std::uint32_t>> seen;  // apex, triangle
-  for (std::size_t e = 0; e < table.size(); ++e) {
-    if (table.uses(e).size() < 2) continue;
-    seen.clear();
-    for (const std::uint32_t h : table.uses(e))
-      if (is_first_edge(triangles[h / 3], table.edges[e]))
-        seen.push_back({apex(triangles[h / 3], table.edges[e]), h / 3});
-    std::sort(seen.begin(), seen.end());
-    for (std::size_t i = 0; i + 1 < seen.size();) {
-      std::size_t end = i + 1;
-      while (end < seen.size() && seen[end].first == seen[i].first) ++end;
-      if (end - i > 1) {
-        groups.emplace_back();
-        for (std::size_t k = i; k < end; ++k) groups.back().triangles.push_back(seen[k].second);
-      }
-      i = end;
-    }
-  }
-  return groups;
+  constexpr std::size_t kEdges = 2048;
+  return parallel_collect<Group>(table.size(), kEdges,
+                                 [&](std::size_t begin, std::size_t end, std::vector<Group>& groups) {
+                                   std::vector<std::pair<VertexIndex, std::uint32_t>> seen;  // apex, triangle
+                                   for (std::size_t e = begin; e < end; ++e)
+                                     find_groups_at(triangles, table, e, seen, groups);
+                                 });
 }
 
 /// Groups that hang together over edges without any other face form a sheet. Whether a sheet stays, one triangle of

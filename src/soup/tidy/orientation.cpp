@@ -1,3 +1,5 @@
+#include "base/core/disjoint_sets.h"
+#include "base/core/parallel.h"
 #include "soup/tidy/steps.h"
 
 #include <algorithm>
@@ -9,12 +11,12 @@ namespace {
 /// Per half-edge the other one of its edge, whichever way that runs; kNone where an edge has not two.
 std::vector<HalfEdge> half_edges_across(const EdgeTable& table) {
   std::vector<HalfEdge> across(table.half_edges.size(), kNone);
-  for (std::size_t e = 0; e < table.size(); ++e) {
+  parallel_for(table.size(), [&](std::size_t e) {
     const auto uses = table.uses(e);
-    if (uses.size() != 2) continue;
+    if (uses.size() != 2) return;
     across[uses[0]] = uses[1];
     across[uses[1]] = uses[0] / 3 == uses[1] / 3 ? uses[1] : uses[0];
-  }
+  });
   return across;
 }
 
@@ -64,10 +66,38 @@ class PieceWalk {
   std::vector<std::uint32_t> members_;
 };
 
+/// Whether the two faces of each edge agree as they are.
+bool agree_as_they_are(std::span<const Triangle> triangles, const EdgeTable& table) {
+  return parallel_find(table.size(), [&](std::size_t e) {
+           const auto uses = table.uses(e);
+           return uses.size() == 2 && start_of(triangles, uses[0]) == start_of(triangles, uses[1]);
+         }) == table.size();
+}
+
+Pieces pieces_without_turning(std::size_t triangles, const EdgeTable& table) {
+  DisjointSets joined(triangles);
+  parallel_for(table.size(), [&](std::size_t e) {
+    if (table.uses(e).size() == 2) joined.join_shared(table.uses(e)[0] / 3, table.uses(e)[1] / 3);
+  });
+  const auto first_of = [&](std::size_t t) { return joined.find_shared(static_cast<std::uint32_t>(t)); };
+  Pieces pieces;
+  std::vector<std::uint32_t>& piece = pieces.piece_of_triangle;
+  piece.resize(triangles);
+  const std::size_t count = parallel_number(
+      triangles, [&](std::size_t t) { return first_of(t) == t; },
+      [&](std::size_t t, std::size_t number) { piece[t] = static_cast<std::uint32_t>(number); });
+  parallel_for(triangles, [&](std::size_t t) {
+    if (const std::uint32_t first = first_of(t); first != t) piece[t] = piece[first];
+  });
+  pieces.orientable.assign(count, 1);
+  return pieces;
+}
+
 }  // namespace
 
 Pieces orient_pieces(Draft& draft) {
   std::vector<Triangle>& triangles = draft.mesh.triangles;
+  if (agree_as_they_are(triangles, draft.edges())) return pieces_without_turning(triangles.size(), draft.edges());
   PieceWalk walk(draft);
   Pieces pieces;
   pieces.piece_of_triangle.assign(triangles.size(), kNone);

@@ -1,6 +1,7 @@
 #include <octafront/error.h>
 
-#include "base/mesh/renumber.h"
+#include "base/core/parallel.h"
+#include "base/core/renumber.h"
 #include "soup/tidy/steps.h"
 
 #include <algorithm>
@@ -84,6 +85,29 @@ void check_face(const SurfaceMesh& soup, const Triangle& t, std::uint32_t face) 
   }
 }
 
+bool is_usable(const SurfaceMesh& soup, const Triangle& t) {
+  return std::ranges::all_of(t, [&](VertexIndex v) {
+    if (v >= soup.points.size()) return false;
+    const Vec3 p = soup.points[v];
+    return is_finite(p) && std::max({std::abs(p.x), std::abs(p.y), std::abs(p.z)}) <= kLargest;
+  });
+}
+
+Box3 box_of_faces(const SurfaceMesh& soup) {
+  struct Part {
+    Box3 box;
+    Part& operator+=(const Part& other) { return box.add(other.box), *this; }
+  };
+  return parallel_sum(soup.triangles.size(),
+                      [&](std::size_t begin, std::size_t end) {
+                        Part part;
+                        for (std::size_t t = begin; t < end; ++t)
+                          for (const VertexIndex v : soup.triangles[t]) part.box.add(soup.points[v]);
+                        return part;
+                      })
+      .box;
+}
+
 }  // namespace
 
 void check_input(const SurfaceMesh& soup) {
@@ -102,13 +126,11 @@ void check_input(const SurfaceMesh& soup) {
   // Half-edges are numbered with 32 bits.
   if (faces > kNone / 3 - 1)
     throw InputError(fmt::format("{} triangles are too many (at most {})", faces, kNone / 3 - 1));
-  Box3 box;
-  for (std::uint32_t t = 0; t < faces; ++t) {
-    check_face(soup, soup.triangles[t], soup.source_of(t));
-    for (const VertexIndex v : soup.triangles[t]) box.add(soup.points[v]);
-  }
-  if (box.empty()) return;
-  const Vec3 extent = box.extent();
+  if (const std::size_t bad = parallel_find(faces, [&](std::size_t t) { return !is_usable(soup, soup.triangles[t]); });
+      bad < faces)
+    check_face(soup, soup.triangles[bad], soup.source_of(bad));
+  if (faces == 0) return;
+  const Vec3 extent = box_of_faces(soup).extent();
   const double size = std::max({extent.x, extent.y, extent.z});
   if (size > 0 && size < kSmallest)
     throw InputError(fmt::format("the model is only {:g} wide: scale it to a size above {:g}", size, kSmallest));

@@ -2,7 +2,7 @@
 
 // The working mesh in blocks that threads may change at the same time: the same result for any number of them.
 
-#include "base/shared/blocks.h"
+#include "base/geometry/blocks.h"
 #include "surface/edits/working_mesh.h"
 
 #include <array>

@@ -240,7 +240,7 @@ class Cutter {
   const SurfaceMesh& complex_;
   const EdgeTable& table_;
   const std::uint32_t faces_;
-  const std::vector<std::uint32_t> edge_of_;
+  const RawVector<std::uint32_t> edge_of_;
   DisjointSets fans_;  ///< corners of triangles around a vertex, over edges that are not cut
   std::vector<std::uint8_t> cut_, fan_is_open_;
   SeamedSurface out_;

@@ -1,7 +1,7 @@
 #include <octafront/validity.h>
 
+#include "base/core/renumber.h"
 #include "base/mesh/edge_nodes.h"
-#include "base/mesh/renumber.h"
 #include "base/mesh/tet_meshes.h"
 #include "support/lattice_points.h"
 #include "support/rich_mesh.h"

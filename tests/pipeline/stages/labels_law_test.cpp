@@ -7,8 +7,8 @@
 #include <octafront/validity.h>
 
 #include "base/geometry/measures.h"
-#include "base/labels/labels.h"
 #include "base/mesh/face_table.h"
+#include "base/mesh/labels.h"
 #include "improve/start_meshes.h"
 #include "support/random.h"
 

@@ -33,6 +33,30 @@ TEST(Stages, OneAfterTheOtherMakeWhatGenerateMakes) {
   EXPECT_EQ(mesh_hash(filled.mesh), generate(torus, options).report.hash);
 }
 
+TEST(MeshHash, TellsWhatIsWhere) {
+  TetMesh mesh;
+  mesh.points = {{0, 0, 0}, {1, 0, 0}, {0, 1, 0}, {0, 0, 1}, {1, 1, 1}};
+  mesh.tets = {{0, 1, 2, 3}, {1, 2, 3, 4}};
+  mesh.region = {0, 1};
+  const auto changed = [&](const auto& change) {
+    TetMesh other = mesh;
+    change(other);
+    return mesh_hash(other);
+  };
+  EXPECT_EQ(changed([](TetMesh&) {}), mesh_hash(mesh));
+  EXPECT_NE(changed([](TetMesh& m) { std::swap(m.tets[0], m.tets[1]); }), mesh_hash(mesh));
+  EXPECT_NE(changed([](TetMesh& m) { std::swap(m.tets[0][0], m.tets[0][1]); }), mesh_hash(mesh));
+  EXPECT_NE(changed([](TetMesh& m) { std::swap(m.points[0], m.points[1]); }), mesh_hash(mesh));
+  EXPECT_NE(changed([](TetMesh& m) { std::swap(m.region[0], m.region[1]); }), mesh_hash(mesh));
+  EXPECT_NE(changed([](TetMesh& m) { m.points[4].x = std::nextafter(1.0, 2.0); }), mesh_hash(mesh));
+  EXPECT_NE(changed([](TetMesh& m) {
+              m.boundary = {{0, 1, 2}};
+            }),
+            changed([](TetMesh& m) {
+              m.interfaces = {{0, 1, 2}};
+            }));
+}
+
 TEST(Stages, EachCanBeCalledAlone) {
   const SurfaceMesh cube = testing::cube(4);
   const Options options = coarse();

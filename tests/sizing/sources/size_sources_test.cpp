@@ -50,8 +50,7 @@ TEST(SizeField, StripsSideBySideAreNotSampledOneByOne) {
     ribbon.triangles.push_back({a, a + 3, a + 1});
   }
   const double h = 0.01;
-  const std::vector<SizeSample> samples =
-      sample_surface(ribbon, std::vector<double>(ribbon.triangles.size(), h), {}, RunContext{});
+  const auto samples = sample_surface(ribbon, std::vector<double>(ribbon.triangles.size(), h), {}, RunContext{});
   EXPECT_LT(samples.size(), 10 * ribbon.triangles.size());
   std::mt19937 random(1);
   std::uniform_real_distribution<double> in(0, 1);

@@ -4,9 +4,9 @@
 
 #include <octafront/error.h>
 
+#include "sizing/field/mesh_sizes.h"
 #include "sizing/size_cases.h"
 #include "sizing/sources/gaps.h"
-#include "sizing/sources/mesh_sizes.h"
 #include "support/named_surfaces.h"
 
 #include <algorithm>
