@@ -140,7 +140,7 @@ def main():
     if not a.skip_page:
         text = (ROOT / "bench/pages/coarse-input.md.in").read_text()
         lines = [*table(SHORT, [[cells[HEAD.index(c)] for c in SHORT] for cells in rows if cells[1] == ON_PAGE]), "",
-                 f"Automatic sizes and 500,000 elements, all stages, input and by output triangle: {put('coarse-input', HEAD, rows)}."]
+                 f"Automatic sizes and 500,000 elements, all stages, by input and by output triangle: {put('coarse-input', HEAD, rows)}."]
         said = f"{written_by('bench/run.sh coarse_input')}: files of about a million triangles, one thread, CPU seconds of the process."
         write("coarse-input", [text.replace("@SAID@", said).replace("@TABLE@", "\n".join(lines))])
 
