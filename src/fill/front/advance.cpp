@@ -85,8 +85,10 @@ class Phases {
   }
 
  private:
-  void queue_up(std::vector<FrontFace>& faces, std::uint8_t level) {
-    for (const FrontFace& f : faces) front_.queue.push_back({f, level, false});
+  void queue_up(RawVector<FrontFace>& faces, std::uint8_t level) {
+    const std::size_t first = front_.queue.size();
+    front_.queue.resize(first + faces.size());
+    parallel_for(faces.size(), [&](std::size_t f) { front_.queue[first + f] = {faces[f], level, false}; });
     faces.clear();
   }
 

@@ -3,6 +3,7 @@
 #include <octafront/tet_mesh.h>
 #include <octafront/vec.h>
 
+#include "base/core/raw_vector.h"
 #include "fill/front/front.h"
 #include "fill/front/front_task.h"
 
@@ -36,10 +37,10 @@ struct FrontState {
   double finest_size = 1;     ///< > 0
   std::uint32_t regions = 1;  ///< those of faces are below it, or kNone
   std::vector<Vec3> points;
-  std::vector<float> sizes;         ///< wanted edge length, per point
-  std::vector<WaitingFace> queue;   ///< will try next (the paper's Qc and Qn)
-  std::vector<FrontFace> held;      ///< found no tetrahedron at the level of the last try (Qh)
-  std::vector<FrontFace> passive;   ///< only met by others so far
+  RawVector<float> sizes;           ///< wanted edge length, per point
+  RawVector<WaitingFace> queue;     ///< will try next (the paper's Qc and Qn)
+  RawVector<FrontFace> held;        ///< found no tetrahedron at the level of the last try (Qh)
+  RawVector<FrontFace> passive;     ///< only met by others so far
   std::vector<FilledPiece> filled;  ///< tetrahedra in order
   FrontWork work;                   ///< of all pieces together
   std::size_t phases = 0;           ///< that it has gone through

@@ -27,6 +27,7 @@ class Divider {
   Divider(const FrontState& front, const PartitionRule& rule) : rule_(rule), boxes_(front.faces()) {
     queued_ = front.queue.size();
     parallel_for(boxes_.size(), [&](std::size_t f) {
+      boxes_[f] = Box3();
       for (const VertexIndex v : front.face(f).corners) boxes_[f].add(front.points[v]);
     });
   }
@@ -58,21 +59,21 @@ class Divider {
   bool is_queued(FrontBlock::Member m) const { return m.owned && m.face < queued_; }
 
   /// The numbers of the block's owned faces of the queue, or of all its faces.
-  std::vector<std::uint32_t> faces_of(const FrontBlock& block, bool queued) const {
-    return parallel_collect<std::uint32_t>(block.members.size(), kFacesForTask,
-                                           [&](std::size_t begin, std::size_t end, std::vector<std::uint32_t>& faces) {
-                                             for (std::size_t i = begin; i < end; ++i)
-                                               if (!queued || is_queued(block.members[i]))
-                                                 faces.push_back(block.members[i].face);
-                                           });
+  RawVector<std::uint32_t> faces_of(const FrontBlock& block, bool queued) const {
+    return parallel_collect<std::uint32_t, RawVector<std::uint32_t>>(
+        block.members.size(), kFacesForTask,
+        [&](std::size_t begin, std::size_t end, std::vector<std::uint32_t>& faces) {
+          for (std::size_t i = begin; i < end; ++i)
+            if (!queued || is_queued(block.members[i])) faces.push_back(block.members[i].face);
+        });
   }
 
   /// Across the longest extent of the owned part of the queue, or of all faces where these are too many, for which the
   /// plane cuts few enough.
   bool choose_plane(const FrontBlock& block, int& axis, double& plane) const {
-    const std::vector<std::uint32_t> queue = faces_of(block, true);
+    const RawVector<std::uint32_t> queue = faces_of(block, true);
     const bool by_queue = queue.size() > rule_.queued_faces;
-    const std::vector<std::uint32_t> faces = by_queue ? queue : faces_of(block, false);
+    const RawVector<std::uint32_t> faces = by_queue ? queue : faces_of(block, false);
     const Box3 extent = parallel_sum(faces.size(), [&](std::size_t begin, std::size_t end) {
                           Centers centers;
                           for (std::size_t i = begin; i < end; ++i) centers.box.add(boxes_[faces[i]].center());
@@ -114,7 +115,7 @@ class Divider {
   };
 
   /// A plane with about the rule's share of the faces below it, and some on both sides.
-  double quantile(const std::vector<std::uint32_t>& faces, int axis, const Box3& extent) const {
+  double quantile(const RawVector<std::uint32_t>& faces, int axis, const Box3& extent) const {
     const double lo = extent.lo[axis], per_bin = (extent.hi[axis] - lo) / kBins;
     const Histogram histogram = parallel_sum(faces.size(), [&](std::size_t begin, std::size_t end) {
       Histogram h;
@@ -161,27 +162,17 @@ class Divider {
     for (int h = 0; h < 2; ++h) {
       half[h].territory = block.territory;
       for (const Halves& part : parts) half[h].queued += part.queued[h];
-      half[h].members = joined(parts, h);
+      std::vector<std::vector<FrontBlock::Member>> members;
+      for (Halves& part : parts) members.push_back(std::move(part.members[h]));
+      half[h].members = joined<RawVector<FrontBlock::Member>>(members);
     }
     half[0].territory.hi[axis] = plane;
     half[1].territory.lo[axis] = plane;
     return half;
   }
 
-  static std::vector<FrontBlock::Member> joined(std::vector<Halves>& parts, int half) {
-    if (parts.size() == 1) return std::move(parts[0].members[half]);
-    std::vector<std::size_t> first{0};
-    for (const Halves& part : parts) first.push_back(first.back() + part.members[half].size());
-    std::vector<FrontBlock::Member> all(first.back());
-    parallel_for(parts.size(), [&](std::size_t s) {
-      const auto& some = parts[s].members[half];
-      std::copy(some.begin(), some.end(), all.begin() + static_cast<std::ptrdiff_t>(first[s]));
-    });
-    return all;
-  }
-
   PartitionRule rule_;
-  std::vector<Box3> boxes_;
+  RawVector<Box3> boxes_;
   std::size_t queued_ = 0;
 };
 
@@ -240,7 +231,7 @@ FrontBlock FrontBlock::whole(const FrontState& front) {
   FrontBlock block;
   block.territory = kEverywhere;
   block.members.resize(front.faces());
-  for (std::uint32_t f = 0; f < block.members.size(); ++f) block.members[f] = {f, true};
+  parallel_for(block.members.size(), [&](std::size_t f) { block.members[f] = {static_cast<std::uint32_t>(f), true}; });
   block.queued = front.queue.size();
   return block;
 }

@@ -15,9 +15,9 @@ struct FrontBlock {
   };
   static constexpr std::uint64_t kMostFaces = std::uint64_t{1} << 31;  ///< that Member::face tells apart
   Box3 territory;                                                      ///< open; infinite where no other block lies
-  std::vector<Member> members;  ///< every face that reaches into the territory, in ascending order
-  std::size_t queued = 0;       ///< owned faces of the queue; where it is 0, nothing happens
-  bool is_of_regions = false;   ///< all of some regions, nothing of which is in other blocks: worked off to its end
+  RawVector<Member> members;   ///< every face that reaches into the territory, in ascending order
+  std::size_t queued = 0;      ///< owned faces of the queue; where it is 0, nothing happens
+  bool is_of_regions = false;  ///< all of some regions, nothing of which is in other blocks: worked off to its end
 
   /// Everything in one block. Throws MeshingError if the front has more than kMostFaces.
   static FrontBlock whole(const FrontState& front);

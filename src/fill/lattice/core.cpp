@@ -4,7 +4,7 @@
 
 #include "base/core/buckets.h"
 #include "base/core/index_range.h"
-#include "base/core/parallel.h"
+#include "base/core/parallel_arrays.h"
 #include "base/core/shared_value.h"
 #include "base/geometry/triangle_tree.h"
 #include "base/mesh/complex.h"
@@ -179,7 +179,7 @@ class CoreBuilder {
             SharedValue(is_used[s]).store(1);
     });
     join_marks(comm_, is_used, "sites of the lattice");
-    vertex_.assign(is_used.size(), kNone);
+    vertex_ = parallel_filled(is_used.size(), kNone);
     first_hanging_ = static_cast<VertexIndex>(parallel_number(
         is_used.size(), [&](std::size_t s) { return is_used[s] != 0; },
         [&](std::size_t s, std::size_t number) { vertex_[s] = static_cast<VertexIndex>(number); }));
@@ -271,7 +271,7 @@ class CoreBuilder {
   const ClearSites& sites_;
   const std::span<CoreChunk> chunks_;
   const Comm& comm_;
-  std::vector<VertexIndex> vertex_;  ///< per site that does not hang
+  RawVector<VertexIndex> vertex_;  ///< per site that does not hang
   std::vector<LatticeSite> hanging_;
   VertexIndex first_hanging_ = 0;
   LatticeCore core_;
