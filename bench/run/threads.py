@@ -1,7 +1,7 @@
 #!/usr/bin/env python3
 """What is serial in each stage, and what that predicts for 2, 16 and 64 threads -> docs/measured/threads.md.
 
-    bench/run/threads.py BUILD [--model FILE] [--elements 1e6,4e6] [--runs 3] [--page]
+    bench/run/threads.py BUILD [--model FILE] [--elements 1e6,4e6,2e7] [--runs 3] [--page]
 
 One thread does all, and every task of parallel.h is timed (bench/run/forecast.h), so any machine will do. Of several
 runs the one of least time counts.
@@ -53,7 +53,7 @@ def rows(told):
 
 def page(told, model, args):
     text = (ROOT / "bench/pages/threads.md.in").read_text()
-    lines = [line for one in told[-1:] for line in (f"{one['tets']:,} elements:", "", *rows(one), "")]
+    lines = [line for one in told for line in (f"{one['tets']:,} elements:", "", *rows(one), "")]
     said = f"{written_by(args)}: {model} from its file, `--elements`, on one thread."
     return text.replace("@SAID@", said).replace("@TABLES@", "\n".join(lines).rstrip())
 
@@ -62,7 +62,7 @@ def main():
     parser = argparse.ArgumentParser(description=__doc__)
     parser.add_argument("build", type=pathlib.Path)
     parser.add_argument("--model", default="models/clean/bunny00.off")
-    parser.add_argument("--elements", default="1e6,4e6")
+    parser.add_argument("--elements", default="1e6,4e6,2e7")
     parser.add_argument("--runs", type=int, default=3)
     parser.add_argument("--page", action="store_true")
     a = parser.parse_args()
