@@ -52,8 +52,13 @@ def rows(told):
 
 
 def page(told, model, args):
+    """Whole processes, and the stages of the middle one; all rows are in a file beside."""
     text = (ROOT / "bench/pages/threads.md.in").read_text()
-    lines = [line for one in told for line in (f"{one['tets']:,} elements:", "", *rows(one), "")]
+    of_process = [[f"{one['tets']:,}", *row("", one["whole"], one["whole"])[1:]] for one in told]
+    all_rows = [[one["tets"], *row(name, of_stage, one["whole"])] for one in told for name, of_stage in one["stages"].items()]
+    shown = told[len(told) // 2]
+    lines = [*tables.table(["elements", *HEAD[1:]], of_process), "", f"{shown['tets']:,} elements:", "", *rows(shown), "",
+             f"All stages: {tables.put('threads', ['elements', *HEAD], all_rows)}."]
     said = f"{written_by(args)}: {model} from its file, `--elements`, on one thread."
     return text.replace("@SAID@", said).replace("@TABLES@", "\n".join(lines).rstrip())
 
