@@ -79,7 +79,7 @@ std::uint64_t hash_of_item(const Item& item, std::uint64_t place) {
   static_assert(std::has_unique_object_representations_v<Item> || std::is_same_v<Item, Vec3>);
   std::array<std::uint64_t, (sizeof(Item) + 7) / 8> words{};
   std::memcpy(words.data(), &item, sizeof(Item));
-  std::uint64_t hash = place;
+  std::uint64_t hash = mixed_bits(place);  // else place and label would stand for each other
   for (const std::uint64_t word : words) hash = mixed_bits(hash ^ word);
   return hash;
 }

@@ -49,6 +49,7 @@ TEST(MeshHash, TellsWhatIsWhere) {
   EXPECT_NE(changed([](TetMesh& m) { std::swap(m.points[0], m.points[1]); }), mesh_hash(mesh));
   EXPECT_NE(changed([](TetMesh& m) { std::swap(m.region[0], m.region[1]); }), mesh_hash(mesh));
   EXPECT_NE(changed([](TetMesh& m) { m.points[4].x = std::nextafter(1.0, 2.0); }), mesh_hash(mesh));
+  EXPECT_NE(changed([](TetMesh& m) { m.region = {0, 0}; }), changed([](TetMesh& m) { m.region = {1, 1}; }));
   EXPECT_NE(changed([](TetMesh& m) {
               m.boundary = {{0, 1, 2}};
             }),
