@@ -167,12 +167,7 @@ TetMesh part_of(const TetMesh& whole, const Origins& items, std::vector<VertexIn
   for (const std::uint32_t f : items.faces)
     f < outer ? part.boundary.push_back(whole.boundary[f]) : part.interfaces.push_back(whole.interfaces[f - outer]);
   part.curve_edges = of_items(whole.curve_edges, items.edges);
-  renumber(part.tets, here);
-  renumber(part.mid_nodes, here);
-  for (VertexIndex& v : part.high_nodes) v = here[v];
-  renumber(part.boundary, here);
-  renumber(part.interfaces, here);
-  renumber(part.curve_edges, here);
+  renumber_corners(part, here);
   for (const VertexIndex v : items.nodes) here[v] = kNone;
   inherit(part, whole, items);
   return part;

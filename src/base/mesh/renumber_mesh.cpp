@@ -19,13 +19,17 @@ void renumber_named_nodes(TetMesh& mesh, const std::vector<VertexIndex>& number)
   std::sort(mesh.periodic_nodes.begin(), mesh.periodic_nodes.end());
 }
 
-void renumber_vertices(TetMesh& mesh, const std::vector<VertexIndex>& number) {
+void renumber_corners(TetMesh& mesh, const std::vector<VertexIndex>& number) {
   renumber(mesh.tets, number);
   renumber(mesh.mid_nodes, number);
   for (VertexIndex& v : mesh.high_nodes) v = number[v];
   renumber(mesh.boundary, number);
   renumber(mesh.interfaces, number);
   renumber(mesh.curve_edges, number);
+}
+
+void renumber_vertices(TetMesh& mesh, const std::vector<VertexIndex>& number) {
+  renumber_corners(mesh, number);
   renumber_named_nodes(mesh, number);
   for (NamedSet& set : mesh.sets) {
     if (set.kind != NamedSet::Kind::kNodes) continue;

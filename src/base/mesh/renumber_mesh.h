@@ -13,6 +13,9 @@ namespace octafront {
 /// and pairs with a node whose number is kNone go.
 void renumber_named_nodes(TetMesh& mesh, const std::vector<VertexIndex>& number);
 
+/// Replaces the corners and nodes of tetrahedra, faces and edges alone. REQUIRES: each has a number.
+void renumber_corners(TetMesh& mesh, const std::vector<VertexIndex>& number);
+
 /// Replaces each vertex in all arrays of a mesh but `points`; vertices whose number is kNone leave the sets of nodes.
 void renumber_vertices(TetMesh& mesh, const std::vector<VertexIndex>& number);
 
