@@ -425,7 +425,7 @@ std::optional<std::string> defect_in_table(const TetMesh& mesh, const FaceTable&
 
 template <class Faces>
 std::optional<std::string> face_defect(const TetMesh& mesh, const Faces& which, std::uint64_t first) {
-  constexpr std::size_t kFacesAtOnce = std::size_t{1} << 26;  // about: 256 MB
+  constexpr std::size_t kFacesAtOnce = std::size_t{1} << 27;  // about: 512 MB
   const RangeBuckets ranges(mesh.points.size());
   const std::size_t rounds = std::min(4 * mesh.tets.size() / kFacesAtOnce + 1, ranges.count());
   for (std::size_t i = 0; i < rounds; ++i) {
