@@ -11,7 +11,6 @@
 
 #include <algorithm>
 #include <cstring>
-#include <iterator>
 #include <utility>
 
 #include <fmt/core.h>
@@ -101,7 +100,7 @@ class AsciiStl {
     for (Part& part : parts) {
       first.push_back(first.back() + part.solid.size());
       first_solid.push_back(static_cast<std::uint32_t>(builder_.patch_names.size()));
-      std::ranges::move(part.names, std::back_inserter(builder_.patch_names));
+      for (std::string& name : part.names) builder_.patch_names.push_back(std::move(name));
     }
     const std::size_t facets = first.back();
     if (facets >= kNone / 3) return false;
