@@ -3,6 +3,7 @@
 // Arrays that several threads make: nothing is zeroed, copied or numbered by one of them.
 
 #include "base/core/parallel.h"
+#include "base/core/system_memory.h"
 
 #include <algorithm>
 #include <cstddef>
@@ -23,6 +24,15 @@ RawVector<typename All::value_type> parallel_copy(const All& from) {
               copy.begin() + static_cast<std::ptrdiff_t>(begin));
   });
   return copy;
+}
+
+/// A vector gets longer, its new items zero. One thread alone would spend most of the time on taking their pages from
+/// the system.
+template <class Item>
+void parallel_resize(std::vector<Item>& all, std::size_t n) {
+  all.reserve(n);
+  take_pages(all.data() + all.size(), (n - all.size()) * sizeof(Item));
+  all.resize(n);
 }
 
 /// n items of one value, written by several threads.

@@ -1,6 +1,6 @@
 #include "base/core/stage_timer.h"
 
-#include "base/core/freed_memory.h"
+#include "base/core/system_memory.h"
 
 #ifdef _WIN32
 #include "base/core/files_of_windows.h"

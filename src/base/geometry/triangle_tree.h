@@ -3,6 +3,7 @@
 #include <octafront/ids.h>
 #include <octafront/vec.h>
 
+#include "base/core/raw_vector.h"
 #include "base/geometry/triangle_box.h"
 #include "base/geometry/triangle_intersection.h"
 
@@ -148,9 +149,9 @@ class TriangleTree {
   // Splits are at the median, so depth is at most log2 of 2^32 triangles.
   static constexpr int kMaxDepth = 64;
 
-  std::vector<Node> nodes_;
-  std::vector<Item> items_;
-  std::vector<std::uint32_t> item_of_triangle_;
+  RawVector<Node> nodes_;
+  RawVector<Item> items_;
+  RawVector<std::uint32_t> item_of_triangle_;
 };
 
 /// Over points, or segments: as triangles with corners that are one, numbered as the list.

@@ -66,11 +66,12 @@ class Unpacker {
 };
 
 /// The lists of all ranks in one, that of rank 0 first.
-template <class T>
-std::vector<T> gathered_lists(const Comm& comm, const std::vector<T>& mine, std::string_view what) {
+template <class List>
+List gathered_lists(const Comm& comm, List mine, std::string_view what) {
+  using T = typename List::value_type;
   if (comm.alone()) return mine;
   const auto bytes = std::as_bytes(std::span(mine));
-  std::vector<T> all;
+  List all;
   comm.gather({bytes.begin(), bytes.end()}, what).for_each([&](int, std::span<const std::byte> list) {
     const std::size_t first = all.size();
     all.resize(first + list.size() / sizeof(T));

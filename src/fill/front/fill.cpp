@@ -126,7 +126,7 @@ std::vector<Tet> put_together(std::vector<FilledPiece>& pieces) {
     std::vector<std::size_t> to;
     std::size_t end = tets.size();
     for (const FilledPiece& piece : some) to.push_back(std::exchange(end, end + piece.tets.size()));
-    tets.resize(end);
+    parallel_resize(tets, end);
     parallel_for(some.size(), [&](std::size_t i) {
       const std::vector<Tet> piece = std::move(some[i].tets);
       std::copy(piece.begin(), piece.end(), tets.begin() + static_cast<std::ptrdiff_t>(to[i]));

@@ -186,10 +186,10 @@ class CoreBuilder {
     for (std::size_t c = 0; c < chunks_.size(); ++c)
       for (std::size_t i = 0; i < chunks_[c].hanging.size(); ++i)
         if (hanging_is_used[c][i]) hanging_.push_back(chunks_[c].hanging[i]);
-    hanging_ = gathered_lists(comm_, hanging_, "sites of the lattice");
+    hanging_ = gathered_lists(comm_, std::move(hanging_), "sites of the lattice");
     std::sort(hanging_.begin(), hanging_.end());
     hanging_.erase(std::unique(hanging_.begin(), hanging_.end()), hanging_.end());
-    core_.points.resize(first_hanging_ + hanging_.size());
+    parallel_resize(core_.points, first_hanging_ + hanging_.size());
     parallel_for(vertex_.size(), [&](std::size_t s) {
       if (vertex_[s] != kNone) core_.points[vertex_[s]] = sites_.position_of(static_cast<SiteNumber>(s));
     });
@@ -221,7 +221,7 @@ class CoreBuilder {
     std::vector<std::size_t> to;
     std::size_t end = core_.tets.size();
     for (std::size_t c = first; c < last; ++c) to.push_back(std::exchange(end, end + chunks_[c].tets.size()));
-    core_.tets.resize(end);
+    parallel_resize(core_.tets, end);
     parallel_for(
         last - first,
         [&](std::size_t i) {
@@ -236,7 +236,7 @@ class CoreBuilder {
 
   /// A clear face between two tetrahedra that do not belong to the core is found twice and bounds nothing.
   void take_skin() {
-    const std::vector<Triangle> faces = gathered_lists(comm_, candidates(), "skin of the lattice");
+    const RawVector<Triangle> faces = gathered_lists(comm_, candidates(), "skin of the lattice");
     std::vector<std::uint8_t> single(faces.size(), 0);
     const RangeBuckets ranges(core_.points.size());
     const Buckets<> of_range(faces.size(), ranges.count(), [&](std::size_t i, const auto& add) {
@@ -257,8 +257,8 @@ class CoreBuilder {
   }
 
   /// Those of all chunks of which the core has the corners.
-  std::vector<Triangle> candidates() const {
-    return parallel_collect<Triangle>(
+  RawVector<Triangle> candidates() const {
+    return parallel_collect<Triangle, RawVector<Triangle>>(
         chunks_.size(), 1, [&](std::size_t begin, std::size_t end, std::vector<Triangle>& faces) {
           for (std::size_t c = begin; c < end; ++c)
             for (const Triangle& t : chunks_[c].candidates) {

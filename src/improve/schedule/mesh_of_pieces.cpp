@@ -1,6 +1,6 @@
 #include "improve/schedule/mesh_of_pieces.h"
 
-#include "base/core/freed_memory.h"
+#include "base/core/system_memory.h"
 #include "base/core/groups.h"
 #include "base/core/index_range.h"
 #include "base/core/parallel.h"
