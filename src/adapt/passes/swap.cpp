@@ -88,7 +88,7 @@ class Swapper {
     for (const TetIndex r : ring_.tets) had_ += lack_of(value_of(r));
     if (!(had_ > gain_)) return;
     guard_ = std::min(value_of(t), kGuardOfSwap);
-    piece_.walls_of(ring_, walls_at_);
+    piece_.walls_of(a, b, ring_, walls_at_);
     if (walls_at_.empty() && ring_.closed) return fill_ring(t, a, b);
     if (walls_at_.size() == 2) turn_in_wall(a, b);
   }
