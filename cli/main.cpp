@@ -39,19 +39,7 @@ int main() {
   return octafront_command_line(count, argv.data());
 }
 #else
-#ifdef __GLIBC__
-#include <malloc.h>
-#endif
-
 int main(int argc, char** argv) {
-#ifdef __GLIBC__
-  // Arrays of a stage are given back and asked for again by the next: by itself the library would return the memory of
-  // each to the system, which then clears every page anew. So much of it stays, at most, that nobody uses.
-  constexpr int kKept = 64 << 20;
-  mallopt(M_MMAP_THRESHOLD, kKept / 2);
-  mallopt(M_TRIM_THRESHOLD, kKept);
-  mallopt(M_TOP_PAD, kKept / 2);
-#endif
   return octafront_command_line(argc, argv);
 }
 #endif

@@ -1,11 +1,11 @@
 """Meshes whose sizes follow curvature, against HXT and TetGen side by side, and what such meshes are worth: writes docs/measured/graded.md.
 
-Usage: bench/run.sh graded [--counts 1000000,4000000] [--models bunny00.off,...] [--runs N] [--large ELEMENTS]
+Usage: bench/run.sh graded [--counts 1000000,4000000] [--models bunny00.off,...] [--runs N] [--large ELEMENTS] [--cubes 3300000,20000000]
 
 Kept surfaces: each model is triangulated anew at curvature sizes for about so many tetrahedra; then each mesher fills that surface
 and keeps its triangles, one thread, in turns, the least CPU seconds (user and system) of N runs of the whole process, files
 included. From STL: the same models from a binary STL file, triangulated and filled. --large adds one run of so many
-elements, and how CPU time grows from 100,000 to there.
+elements, and how CPU time grows from 100,000 to there. --cubes alone fills the unit cube at one size, from its geometry on, and writes its rows only.
 """
 import argparse
 import pathlib
@@ -32,8 +32,12 @@ def mesh(build, folder, timeout, source, *options, threads=1):
 
 def meshers(build):
     keep = lambda gradation: lambda s, f, t: mesh(build, f, t, s, "--keep-surface", *gradation)
-    return {"octafront": keep([]), "octafront, gradation .2": keep(["--gradation", "0.2"]),
-            "HXT": lambda s, f, t: gmsh.fill_hxt(s, f, t, held=False), "HXT, MeshSizeMax": gmsh.fill_hxt, "TetGen": tetgen.fill}
+    all = {"octafront": keep([]), "octafront, gradation .2": keep(["--gradation", "0.2"]),
+           "HXT": lambda s, f, t: gmsh.fill_hxt(s, f, t, held=False), "HXT, MeshSizeMax": gmsh.fill_hxt, "TetGen": tetgen.fill}
+    if gmsh.NEWEST:
+        all["newest HXT"] = lambda s, f, t: gmsh.fill_hxt(s, f, t, held=False, program=gmsh.NEWEST)
+        all["newest Delaunay"] = lambda s, f, t: gmsh.fill_delaunay(s, f, t, held=False, program=gmsh.NEWEST)
+    return all
 
 
 def least(runs):
@@ -134,6 +138,44 @@ def growth(build, model, counts, timeout):
     return [*tables.table(GROWTH_HEAD, rows), "", f"CPU time grows as elements to the power {exponent(points):.2f}."]
 
 
+CUBE = "OFF\n8 12 0\n0 0 0\n1 0 0\n1 1 0\n0 1 0\n0 0 1\n1 0 1\n1 1 1\n0 1 1\n" + "".join(
+    f"3 {a} {b} {c}\n" for a, b, c in [(0, 2, 1), (0, 3, 2), (4, 5, 6), (4, 6, 7), (0, 1, 5), (0, 5, 4), (1, 2, 6), (1, 6, 5), (2, 3, 7),
+                                     (2, 7, 6), (3, 0, 4), (3, 4, 7)])
+CUBE_HEAD = ["elements asked", "mesher", "size", "elements", "CPU s", "k/s", "bytes per element", "mean β", "least β", "above .8, %", "least angle °", "most °"]
+
+
+def cube_rows(build, count, timeout):
+    """The unit cube at the edge length of so many regular tetrahedra; of twice as many for Gmsh, which makes half of them."""
+    size = {times: (6 * 2 ** .5 / count / times) ** (1 / 3) for times in (1, 2)}
+    gmshs = {"Gmsh 4.8": gmsh.PROGRAM, **({"newest Gmsh": gmsh.NEWEST} if gmsh.NEWEST else {})}
+    meshers = {"octafront": lambda f: mesh(build, f, timeout, pathlib.Path(f, "cube.off"), "--size", f"{size[1]:.9g}")}
+    for name, program in gmshs.items():
+        for algorithm in ("HXT", "DELAUNAY"):
+            if algorithm == "HXT" or count <= PEERS_UP_TO or program != gmsh.PROGRAM:
+                meshers[f"{name}, {algorithm}"] = lambda f, p=program, a=algorithm: gmsh.cube(f, timeout, size[2], getattr(gmsh, a), program=p)
+    for name, run in meshers.items():
+        with tempfile.TemporaryDirectory() as folder:
+            pathlib.Path(folder, "cube.off").write_text(CUBE)
+            outcome = run(folder)
+            q, why = (None, outcome.error) if outcome.error else evaluated(build, outcome.mesh)
+            if q is None:
+                yield [f"{count:,}", name, why, *[""] * (len(CUBE_HEAD) - 3)]
+                continue
+            n = q["tets"]
+            yield [f"{count:,}", name, f"{size[1 if name == 'octafront' else 2]:.5f}", f"{n:,}", f"{outcome.cpu_seconds:.2f}", f"{n / outcome.cpu_seconds / 1e3:,.0f}",
+                   f"{outcome.peak_bytes / n:.0f}", f"{q['beta_mean']:.4f}", f"{q['beta_min']:.3f}", f"{100 * q['beta_classes'][4] / n:.1f}",
+                   f"{q['dihedral_min']:.1f}", f"{q['dihedral_max']:.1f}"]
+
+
+def write_cubes(args):
+    rows = []
+    for count in args.cubes:
+        for row in cube_rows(args.build, count, args.timeout):
+            rows.append(row)
+            print(tables.row(row), flush=True)
+    print(tables.put("graded-cubes", CUBE_HEAD, rows))
+
+
 def kept_tables(args):
     rows = []
     for model in args.models:
@@ -165,11 +207,12 @@ def stl_tables(args):
 
 def shown(kept, stl):
     """Rows of cells."""
-    return ["## Kept surfaces", "", *tables.spread_by("mesher", KEPT_HEAD, kept, KEPT_HEAD[2:]), "",
+    return ["## Kept surfaces", "", *tables.spread_by("mesher", KEPT_HEAD, kept, KEPT_SHOWN), "",
             f"Median, least and most. Each: {tables.put('graded-kept', KEPT_HEAD, kept)}.", "",
             "## From STL", "", *tables.spread(STL_HEAD, stl, [c for c in STL_HEAD if c in STL_SHOWN]), "", f"Each: {tables.put('graded-stl', STL_HEAD, stl)}."]
 
 
+KEPT_SHOWN = ["elements", "CPU s", "k/s", "ours over it", "bytes per element", "mean β", "least angle °"]
 STL_SHOWN = ("elements", "CPU s", "k/s", "made over expected", "% within .7–1.4", "mean β", "least angle °", "2 threads, times")
 ABOUT = """Kept surfaces: each model is triangulated anew at curvature sizes for about so many tetrahedra; then each mesher fills that surface and keeps its
 triangles, one thread, in turns, the least CPU seconds of the whole process, files included. HXT extends sizes from the boundary, as its users run it;
@@ -183,9 +226,12 @@ def main():
     parser.add_argument("--models", type=lambda s: s.split(","), default=MODELS)
     parser.add_argument("--runs", type=int, default=2)
     parser.add_argument("--large", type=int)
+    parser.add_argument("--cubes", type=lambda s: [int(c) for c in s.split(",")])
     parser.add_argument("--timeout", type=float, default=600)
     args = parser.parse_args()
     args.build = args.build.resolve()
+    if args.cubes:
+        return write_cubes(args)
     lines = shown(kept_tables(args), stl_tables(args))
     if args.large:
         counts = [SMALLEST, *(c for c in args.counts if SMALLEST < c < args.large), args.large]

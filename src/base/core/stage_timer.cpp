@@ -1,5 +1,7 @@
 #include "base/core/stage_timer.h"
 
+#include "base/core/freed_memory.h"
+
 #ifdef _WIN32
 #include "base/core/files_of_windows.h"
 #else
@@ -28,6 +30,7 @@ StageTimer::StageTimer(StageReport& report)
 StageTimer::~StageTimer() {
   report_.wall_seconds += std::chrono::duration<double>(std::chrono::steady_clock::now() - wall_start_).count();
   report_.cpu_seconds += process_cpu_seconds() - cpu_start_;
+  return_freed_memory();
 }
 
 }  // namespace octafront

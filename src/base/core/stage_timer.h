@@ -9,7 +9,7 @@ namespace octafront {
 /// CPU seconds (user and system) that this process has used so far, all threads together.
 double process_cpu_seconds();
 
-/// Fills in the times of a StageReport between its construction and destruction.
+/// Fills in the times of a StageReport between its construction and destruction; then returns memory that was freed.
 class StageTimer {
  public:
   explicit StageTimer(StageReport& report);

@@ -319,25 +319,31 @@ class FaceTally {
   std::vector<Face> faces_;
 };
 
-/// The faces of the tets and the listed ones, by ranges of their least vertices: a range at a time is looked at.
+/// The faces of the tets and the listed ones, by ranges of their least vertices: a range at a time is looked at. Those
+/// of some ranges only, so that the lists of them stay small beside a large mesh.
 class FacesInRanges {
  public:
+  struct Window {
+    std::size_t begin, end;  ///< of ranges
+    std::size_t size() const { return end - begin; }
+  };
+
   template <class Faces>
-  FacesInRanges(const TetMesh& mesh, const Faces& faces)
+  FacesInRanges(const TetMesh& mesh, const Faces& faces, const RangeBuckets& ranges, const Window& window)
       : mesh_(mesh),
-        ranges_(mesh.points.size()),
-        half_faces_(mesh.tets.size(), ranges_.count(),
+        ranges_(ranges),
+        window_(window),
+        half_faces_(mesh.tets.size(), window.size(),
                     [&](std::size_t t, const auto& add) {
                       for (int i = 0; i < 4; ++i)
-                        if (const Triangle face = face_of(mesh.tets[t], i); faces.has_face(face))
-                          add(range_of(face), static_cast<std::uint32_t>(4 * t) + i);
+                        if (const Triangle face = face_of(mesh.tets[t], i); is_here(face) && faces.has_face(face))
+                          add(place_of(face), static_cast<std::uint32_t>(4 * t) + i);
                     }),
-        listed_(mesh.boundary.size() + mesh.interfaces.size(), ranges_.count(), [&](std::size_t f, const auto& add) {
-          if (faces.has_listed(listed_face(mesh, f)))
-            add(range_of(listed_face(mesh, f)), static_cast<std::uint32_t>(f));
+        listed_(mesh.boundary.size() + mesh.interfaces.size(), window.size(), [&](std::size_t f, const auto& add) {
+          if (const Triangle& face = listed_face(mesh, f); is_here(face) && faces.has_listed(face))
+            add(place_of(face), static_cast<std::uint32_t>(f));
         }) {}
 
-  std::size_t ranges() const { return ranges_.count(); }
   bool is_good(std::size_t range) const {
     const auto first = static_cast<VertexIndex>(ranges_.begin(range));
     std::vector<std::uint32_t> count(ranges_.end(range) - first, 0);
@@ -359,19 +365,22 @@ class FacesInRanges {
  private:
   template <class Visit>
   void for_each_face(std::size_t range, const Visit& visit) const {
-    for (const std::uint32_t h : half_faces_[range]) {
+    for (const std::uint32_t h : half_faces_[range - window_.begin]) {
       const Triangle corners = face_of(mesh_.tets[h / 4], static_cast<int>(h % 4));
       visit(corners, FaceOwner(h / 4, false, corners));
     }
-    for (const std::uint32_t f : listed_[range]) {
+    for (const std::uint32_t f : listed_[range - window_.begin]) {
       const Triangle& corners = listed_face(mesh_, f);
       visit(corners, FaceOwner(f, true, corners));
     }
   }
-  std::size_t range_of(const Triangle& t) const { return ranges_.of(face_key(t)[0]); }
+  /// Among the ranges of the window; of those before it, beyond its end.
+  std::size_t place_of(const Triangle& t) const { return ranges_.of(std::min({t[0], t[1], t[2]})) - window_.begin; }
+  bool is_here(const Triangle& t) const { return place_of(t) < window_.size(); }
 
   const TetMesh& mesh_;
   RangeBuckets ranges_;
+  Window window_;
   Buckets<> half_faces_, listed_;
 };
 
@@ -416,10 +425,17 @@ std::optional<std::string> defect_in_table(const TetMesh& mesh, const FaceTable&
 
 template <class Faces>
 std::optional<std::string> face_defect(const TetMesh& mesh, const Faces& which, std::uint64_t first) {
-  const FacesInRanges faces(mesh, which);
-  const auto defect_in = [&](std::size_t range) { return defect_in_table(mesh, faces.table(range), first); };
-  const std::size_t range = parallel_find(faces.ranges(), [&](std::size_t r) { return !faces.is_good(r); });
-  return range < faces.ranges() ? defect_in(range) : std::nullopt;
+  constexpr std::size_t kFacesAtOnce = std::size_t{1} << 27;  // about: 512 MB
+  const RangeBuckets ranges(mesh.points.size());
+  const std::size_t rounds = std::min(4 * mesh.tets.size() / kFacesAtOnce + 1, ranges.count());
+  for (std::size_t i = 0; i < rounds; ++i) {
+    const FacesInRanges::Window window{ranges.count() * i / rounds, ranges.count() * (i + 1) / rounds};
+    const FacesInRanges faces(mesh, which, ranges, window);
+    const std::size_t bad =
+        window.begin + parallel_find(window.size(), [&](std::size_t r) { return !faces.is_good(window.begin + r); });
+    if (bad < window.end) return defect_in_table(mesh, faces.table(bad), first);
+  }
+  return std::nullopt;
 }
 
 // A triangle by its coordinates, rotated so that the least corner comes first.

@@ -1,11 +1,15 @@
 // STL: triangles without connectivity, as text (any number of named solids) or as records of 50 bytes in single
 // precision. The text keeps double precision.
 
+#include <octafront/error.h>
+
 #include "base/core/parallel.h"
+#include "formats/containers/line_ranges.h"
 #include "formats/containers/scanner.h"
 #include "formats/parts/surface_builder.h"
 #include "formats/read/readers.h"
 
+#include <algorithm>
 #include <cstring>
 #include <utility>
 
@@ -16,19 +20,106 @@ namespace {
 
 class AsciiStl {
  public:
-  explicit AsciiStl(const Input& input) : input_(input), scan_(input) {
-    // A facet without blanks to spare takes some eighty bytes.
-    builder_.reserve_faces(input.bytes.size() / 160);
-    builder_.points.reserve(3 * (input.bytes.size() / 160));
-  }
+  explicit AsciiStl(const Input& input) : input_(input), scan_(input) {}
 
   SurfaceFile read() {
-    std::uint32_t solid = 0;
-    while (!scan_.at_end()) read_solid(solid++);
+    if (!read_in_ranges()) {
+      // A facet without blanks to spare takes some eighty bytes.
+      builder_.reserve_faces(input_.bytes.size() / 160);
+      builder_.points.reserve(3 * (input_.bytes.size() / 160));
+      read_solids(0);
+    }
     return builder_.finish(input_, "ASCII STL", true, 0);
   }
 
  private:
+  /// What one range of lines holds.
+  struct Part {
+    std::vector<Vec3> points;          ///< three for each facet
+    std::vector<std::uint32_t> solid;  ///< per facet; 0: the one that goes on, 1: the first that begins here
+    std::vector<std::string> names;    ///< of solids that begin here
+    bool ends_inside = false;          ///< the last solid goes on
+  };
+
+  /// All by several threads; false, with nothing read, where anything is unusual.
+  bool read_in_ranges() {
+    if (!reads_in_ranges(input_.bytes)) return false;
+    const std::vector<std::string_view> ranges = ranges_of_facets(input_.bytes);
+    std::vector<Part> parts(ranges.size());
+    const std::size_t odd = parallel_find(ranges.size(), [&](std::size_t r) {
+      input_.context.check();
+      return !read_part(ranges[r], r > 0, parts[r]);
+    });
+    if (odd < parts.size()) return false;
+    for (std::size_t p = 0; p < parts.size(); ++p)
+      if (parts[p].ends_inside != (p + 1 < parts.size())) return false;
+    return join(parts);
+  }
+
+  /// All but the first begin with a facet.
+  static std::vector<std::string_view> ranges_of_facets(std::string_view text) {
+    std::vector<const char*> begins{text.data()};
+    for (std::string_view range : line_ranges(text)) {
+      if (range.data() == text.data()) continue;
+      while (!range.empty() && !begins_with_facet(range)) {
+        const std::size_t end = range.find('\n');
+        range.remove_prefix(end == std::string_view::npos ? range.size() : end + 1);
+      }
+      if (!range.empty()) begins.push_back(range.data());
+    }
+    begins.push_back(text.data() + text.size());
+    std::vector<std::string_view> ranges;
+    for (std::size_t i = 0; i + 1 < begins.size(); ++i)
+      ranges.emplace_back(begins[i], static_cast<std::size_t>(begins[i + 1] - begins[i]));
+    return ranges;
+  }
+
+  static bool begins_with_facet(std::string_view line) {
+    while (!line.empty() && is_blank(line.front()) && !is_line_end(line.front())) line.remove_prefix(1);
+    return equal_ignoring_case(line.substr(0, 5), "facet") && line.size() > 5 && is_blank(line[5]);
+  }
+
+  bool read_part(std::string_view range, bool goes_on, Part& part) const {
+    const Input input = input_of_range(input_, range);
+    AsciiStl reader(input);
+    reader.part_ = &part;
+    try {
+      if (goes_on) part.ends_inside = !reader.read_facets(0);
+      reader.read_solids(1);
+    } catch (const InputError&) {
+      return false;
+    }
+    part.points = std::move(reader.builder_.points);
+    part.names = std::move(reader.builder_.patch_names);
+    return part.points.size() == 3 * part.solid.size();
+  }
+
+  bool join(std::vector<Part>& parts) {
+    std::vector<std::size_t> first{0};
+    std::vector<std::uint32_t> first_solid;
+    for (Part& part : parts) {
+      first.push_back(first.back() + part.solid.size());
+      first_solid.push_back(static_cast<std::uint32_t>(builder_.patch_names.size()));
+      for (std::string& name : part.names) builder_.patch_names.push_back(std::move(name));
+    }
+    const std::size_t facets = first.back();
+    if (facets >= kNone / 3) return false;
+    builder_.points.resize(3 * facets);
+    std::vector<Triangle> triangles(facets);
+    std::vector<std::uint32_t> patch(facets);
+    parallel_for(parts.size(), [&](std::size_t p) {
+      std::ranges::copy(parts[p].points, builder_.points.begin() + static_cast<std::ptrdiff_t>(3 * first[p]));
+      for (std::size_t t = first[p]; t < first[p + 1]; ++t) {
+        patch[t] = first_solid[p] + parts[p].solid[t - first[p]] - 1;
+        const auto corner = static_cast<VertexIndex>(3 * t);
+        triangles[t] = {corner, corner + 1, corner + 2};
+      }
+    });
+    if (parallel_find(facets, [&](std::size_t t) { return patch[t] != 0; }) == facets) patch.clear();
+    builder_.set_triangles(std::move(triangles), std::move(patch));
+    return true;
+  }
+
   void expect(std::string_view word, std::string_view where) {
     if (equal_ignoring_case(scan_.peek_word(), word)) {
       scan_.word();
@@ -37,9 +128,17 @@ class AsciiStl {
     }
   }
 
-  void read_solid(std::uint32_t solid) {
-    expect("solid", "at the begin of a part");
-    builder_.patch_names.emplace_back(solid_name());
+  void read_solids(std::uint32_t solid) {
+    for (; !scan_.at_end(); ++solid) {
+      expect("solid", "at the begin of a part");
+      builder_.patch_names.emplace_back(solid_name());
+      const bool ended = read_facets(solid);
+      if (part_) part_->ends_inside = !ended;
+    }
+  }
+
+  /// Up to the end of the solid; false if the range ends before.
+  bool read_facets(std::uint32_t solid) {
     for (;;) {
       const std::string_view word = scan_.peek_word();
       if (equal_ignoring_case(word, "facet")) {
@@ -47,14 +146,16 @@ class AsciiStl {
       } else if (equal_ignoring_case(word, "endsolid")) {
         scan_.word();
         scan_.skip_line();
-        return;
+        return true;
       } else if (equal_ignoring_case(word, "end")) {
         scan_.word();
         expect("solid", "behind \"end\"");
         scan_.skip_line();
-        return;
+        return true;
       } else if (equal_ignoring_case(word, "color")) {
         scan_.skip_line();  // of some CAD programs
+      } else if (part_ && word.empty()) {
+        return false;
       } else {
         scan_.fail_expected("\"facet\" or \"endsolid\"");
       }
@@ -95,13 +196,18 @@ class AsciiStl {
     if (corners_.size() < 3) scan_.fail_expected(fmt::format("\"vertex\" number {} of a facet", corners_.size() + 1));
     expect("endloop", "behind the corners of a facet");
     expect("endfacet", "behind \"endloop\"");
-    builder_.add_face(corners_, at, solid);
+    if (part_) {
+      part_->solid.push_back(solid);
+    } else {
+      builder_.add_face(corners_, at, solid);
+    }
   }
 
   const Input& input_;
   Scanner scan_;
   SurfaceBuilder builder_;
   std::vector<std::uint32_t> corners_;
+  Part* part_ = nullptr;  ///< what a range of lines comes to; null: all is read
 };
 
 float little_endian_float(const char* p) {

@@ -1,5 +1,6 @@
 #include "improve/schedule/mesh_of_pieces.h"
 
+#include "base/core/freed_memory.h"
 #include "base/core/groups.h"
 #include "base/core/index_range.h"
 #include "base/core/parallel.h"
@@ -509,6 +510,7 @@ void MeshOfPieces::rewind() {
 
 TetMesh MeshOfPieces::release(Features* features, std::vector<VertexIndex>* numbers) {
   origin_ = {}, home_ = {}, remembers_ = false;
+  return_freed_memory();
   TetMesh mesh = std::move(rest_);
   // By their numbers along a curve, the keys of elements say where in space they lie.
   const std::vector<VertexIndex> along = spatial_order(points_);

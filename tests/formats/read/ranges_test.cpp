@@ -45,6 +45,20 @@ std::string obj_text(const char* corner = "{}") {
   return text;
 }
 
+/// Solids of some hundred facets; `end`: of each facet.
+std::string stl_text(const char* end_of_line = "\n", const char* end = "endfacet") {
+  const SurfaceMesh& s = sphere();
+  std::string text = "solid first part\n";
+  for (std::size_t t = 0; t < s.triangles.size(); ++t) {
+    if (t % 700 == 650) text += fmt::format("endsolid\n  solid part {}{}", t / 700, end_of_line);
+    text += fmt::format("facet normal 0 0 1{0}outer loop{0}", end_of_line);
+    for (const VertexIndex v : s.triangles[t])
+      text += fmt::format("vertex {} {} {}{}", s.points[v].x, s.points[v].y, s.points[v].z, end_of_line);
+    text += fmt::format("endloop{0}{1}{0}", end_of_line, end);
+  }
+  return text + "endsolid first part\n";
+}
+
 SurfaceFile read_by(int threads, const std::string& text, const char* name) {
   const ThreadLimit limit(threads);
   return surface_of(text, name);
@@ -107,12 +121,32 @@ TEST(ReadInRanges, ObjOfWhatNeedsTheLinesBefore) {
   expect_no_thread_is_seen(obj_text() + "f 1 2 \\\n 3\n", "s.obj", false);
 }
 
+TEST(ReadInRanges, AsciiStl) {
+  for (const char* end_of_line : {"\n", "\r\n", " "}) expect_no_thread_is_seen(stl_text(end_of_line), "s.stl", false);
+  const SurfaceMesh read = read_by(4, stl_text(), "s.stl").surface;
+  EXPECT_EQ(read.triangles.size(), sphere().triangles.size());
+  EXPECT_GT(read.patch_names.size(), 20U);
+  EXPECT_EQ(read.patch.back() + 1, read.patch_names.size());
+  expect_no_thread_is_seen(stl_text("\n", "endfacet\ncolor 1 0 0"), "s.stl", false);
+}
+
+TEST(ReadInRanges, AsciiStlOfPolygonsAndOfOneSolid) {
+  const std::string text = stl_text();
+  const std::size_t vertex = text.rfind("vertex");
+  expect_no_thread_is_seen(text.substr(0, vertex) + "vertex 0 0 0\n" + text.substr(vertex), "s.stl", false);
+  std::string one = text.substr(0, text.find("endsolid"));
+  while (one.size() < text.size()) one += one.substr(one.find("facet"));
+  expect_no_thread_is_seen(one + "endsolid\n", "s.stl", false);
+}
+
 TEST(ReadInRanges, ComplaintsNameTheLine) {
-  const std::string off = off_text() + "\n", obj = obj_text();
+  const std::string off = off_text() + "\n", obj = obj_text(), stl = stl_text();
   const std::string bad_off = replaced(off, "\n# faces\n3 ", "\n# faces\n3 x"),
                     bad_obj = replaced(obj, "\nf 1 ", "\nf x ");
   for (const auto& [text, name] :
-       {std::pair(bad_off, "s.off"), std::pair(bad_obj, "s.obj"), std::pair(obj + "f 1 2 999999\n", "s.obj")}) {
+       {std::pair(bad_off, "s.off"), std::pair(bad_obj, "s.obj"), std::pair(obj + "f 1 2 999999\n", "s.obj"),
+        std::pair(replaced(stl, "endsolid\n", ""), "s.stl"), std::pair(replaced(stl, "  solid", "  solit"), "s.stl"),
+        std::pair(stl.substr(0, stl.rfind("endsolid")), "s.stl"), std::pair(stl + "facet\n", "s.stl")}) {
     const std::string one = message_by(1, text, name);
     EXPECT_NE(one.find("line"), std::string::npos) << one;
     EXPECT_EQ(message_by(4, text, name), one);
