@@ -140,7 +140,7 @@ class EdgeCollapser {
       }
       case Kind::kSurface:
         if (to.kind == Kind::kInner || to.rim) return false;
-        piece_.walls_of(ring_, walls_at_);
+        piece_.walls_of(u, w, ring_, walls_at_);
         return walls_at_.size() == 2;
       default:
         return false;

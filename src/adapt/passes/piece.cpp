@@ -72,8 +72,9 @@ bool Piece::ring(TetIndex t, VertexIndex a, VertexIndex b, EdgeRing& out, float 
           ends_outside(out.tets.back(), out.ring[out.ring.size() - 2]));
 }
 
-void Piece::walls_of(const EdgeRing& ring, std::vector<WallAt>& out) const {
+void Piece::walls_of(VertexIndex a, VertexIndex b, const EdgeRing& ring, std::vector<WallAt>& out) const {
   out.clear();
+  if (vertices[a].kind == Kind::kInner || vertices[b].kind == Kind::kInner) return;
   const auto add = [&](TetIndex t, VertexIndex opposite, std::size_t place) {
     if (const Wall w = wall[complex.opposite(t, opposite)]; w != 0) out.push_back({place, ring.ring[place], w});
   };

@@ -217,7 +217,7 @@ class Piece {
     VertexIndex tip;
     Wall wall;
   };
-  void walls_of(const EdgeRing& ring, std::vector<WallAt>& out) const;
+  void walls_of(VertexIndex a, VertexIndex b, const EdgeRing& ring, std::vector<WallAt>& out) const;
   /// visit(half-face) for the walls at a vertex, whose star is given, each once.
   template <class Visit>
   void for_each_wall(VertexIndex v, std::span<const TetIndex> star, const Visit& visit) const {

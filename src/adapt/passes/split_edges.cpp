@@ -178,7 +178,7 @@ class Splitter {
     const std::uint32_t* path = piece_.line(a, b);
     if (path && *path == Parts::kStays) return false;
     if (!piece_.ring(t, a, b, ring_)) return false;
-    piece_.walls_of(ring_, walls_);
+    piece_.walls_of(a, b, ring_, walls_);
     if (std::any_of(walls_.begin(), walls_.end(), [&](const Piece::WallAt& w) { return guide_.keeps(w.wall); }))
       return false;
     const Vec3 p = piece_.point(a), q = piece_.point(b), straight = p + part * (q - p);

@@ -88,7 +88,7 @@ class Swapper {
     for (const TetIndex r : ring_.tets) had_ += lack_of(value_of(r));
     if (!(had_ > gain_)) return;
     guard_ = std::min(value_of(t), kGuardOfSwap);
-    piece_.walls_of(ring_, walls_at_);
+    piece_.walls_of(a, b, ring_, walls_at_);
     if (walls_at_.empty() && ring_.closed) return fill_ring(t, a, b);
     if (walls_at_.size() == 2) turn_in_wall(a, b);
   }
@@ -199,6 +199,7 @@ class Swapper {
     if (are_frozen(u, w) || (are_frozen(f[0], f[1]) && are_frozen(f[1], f[2]))) return;
     const float poorest = value_of(t), other = value_of(o / 4);
     if (other < poorest) return;  // it asks itself
+    if (!mends_ && piece_.is_longer(u, w, kLongestOfSwap)) return;
     const float had = lack_of(poorest) + lack_of(other), guard = std::min(poorest, kGuardOfSwap);
     float lack = 0;
     std::array<Piece::NewTet, 3> made;
@@ -211,7 +212,6 @@ class Swapper {
       if (!(lack < had - gain_)) return;
       made[static_cast<std::size_t>(k)] = {c, piece_.region[t], mends_ ? piece_.score_of(c) : s};
     }
-    if (!mends_ && piece_.is_longer(u, w, kLongestOfSwap)) return;
     gain_ = had - lack;
     old_ = {t, o / 4};
     fresh_.assign(made.begin(), made.end());
