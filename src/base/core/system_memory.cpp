@@ -21,7 +21,7 @@ namespace octafront {
 void return_freed_memory() {
 #ifdef OCTAFRONT_KNOWS_FREED_MEMORY
   // Pages that come back are cleared anew: less than this costs more time than it is worth.
-  constexpr std::size_t kWorthIt = std::size_t{256} << 20;
+  constexpr std::size_t kWorthIt = std::size_t{512} << 20;
   if (mallinfo2().fordblks > kWorthIt) malloc_trim(0);
 #endif
 }
