@@ -1,11 +1,11 @@
 #include "improve/schedule/mesh_of_pieces.h"
 
-#include "base/core/system_memory.h"
 #include "base/core/groups.h"
 #include "base/core/index_range.h"
 #include "base/core/parallel.h"
 #include "base/core/shared_value.h"
 #include "base/core/stage_timer.h"
+#include "base/core/system_memory.h"
 #include "base/geometry/self_intersection.h"
 #include "base/geometry/spatial_order.h"
 #include "base/mesh/renumber_mesh.h"
