@@ -26,8 +26,8 @@ RawVector<typename All::value_type> parallel_copy(const All& from) {
   return copy;
 }
 
-/// A vector gets longer, its new items zero. One thread alone would spend most of the time on taking their pages from
-/// the system.
+/// A vector gets longer, n >= size(), its new items zero. One thread alone would spend most of the time on taking their
+/// pages from the system.
 template <class Item>
 void parallel_resize(std::vector<Item>& all, std::size_t n) {
   all.reserve(n);
