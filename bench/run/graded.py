@@ -32,12 +32,12 @@ def mesh(build, folder, timeout, source, *options, threads=1):
 
 def meshers(build):
     keep = lambda gradation: lambda s, f, t: mesh(build, f, t, s, "--keep-surface", *gradation)
-    all = {"octafront": keep([]), "octafront, gradation .2": keep(["--gradation", "0.2"]),
-           "HXT": lambda s, f, t: gmsh.fill_hxt(s, f, t, held=False), "HXT, MeshSizeMax": gmsh.fill_hxt, "TetGen": tetgen.fill}
+    by_name = {"octafront": keep([]), "octafront, gradation .2": keep(["--gradation", "0.2"]),
+               "HXT": lambda s, f, t: gmsh.fill_hxt(s, f, t, held=False), "HXT, MeshSizeMax": gmsh.fill_hxt, "TetGen": tetgen.fill}
     if gmsh.NEWEST:
-        all["newest HXT"] = lambda s, f, t: gmsh.fill_hxt(s, f, t, held=False, program=gmsh.NEWEST)
-        all["newest Delaunay"] = lambda s, f, t: gmsh.fill_delaunay(s, f, t, held=False, program=gmsh.NEWEST)
-    return all
+        by_name["newest HXT"] = lambda s, f, t: gmsh.fill_hxt(s, f, t, held=False, program=gmsh.NEWEST)
+        by_name["newest Delaunay"] = lambda s, f, t: gmsh.fill_delaunay(s, f, t, held=False, program=gmsh.NEWEST)
+    return by_name
 
 
 def least(runs):
