@@ -37,6 +37,7 @@ struct alignas(64) Vertex {
   bool frozen = false;  ///< asked to stay as it is, with all that is between vertices that are
   bool held = false;    ///< asked to stay as it is, alone
   bool off = false;     ///< on a wall, beside the surface that was given: it is to go there
+  bool balanced = false;  ///< nothing around it changed since walls were balanced
   /// For what mends: kStirred, something around it changed; kSettling, just before the cycle that is under way; kCalm,
   /// all that could be tried around it has been, in vain.
   enum Calmness : std::uint8_t { kCalm, kSettling, kStirred } calmness = kStirred;
@@ -192,13 +193,15 @@ class Piece {
   double edge_length(VertexIndex a, VertexIndex b) const { return length_between(vertices[a], vertices[b]); }
   double length_between(const Vertex& p, const Vertex& q) const { return adapt::length_between(p, q, isotropic); }
   bool is_longer(const Vertex& p, const Vertex& q, double length) const {
-    return !squared_bounds(p, q, isotropic).surely_within(length) && length_between(p, q) > length;
+    const SquaredBounds bounds = squared_bounds(p, q, isotropic);
+    return !bounds.surely_within(length) && (bounds.surely_beyond(length) || length_between(p, q) > length);
   }
   bool is_longer(VertexIndex a, VertexIndex b, double length) const {
     return is_longer(vertices[a], vertices[b], length);
   }
   bool is_shorter(const Vertex& p, const Vertex& q, double length) const {
-    return !squared_bounds(p, q, isotropic).surely_beyond(length) && length_between(p, q) < length;
+    const SquaredBounds bounds = squared_bounds(p, q, isotropic);
+    return !bounds.surely_beyond(length) && (bounds.surely_within(length) || length_between(p, q) < length);
   }
   /// The score of a tet on these vertices, 0 if it is not positive by exact sign.
   float score_of(const Tet& t) const {
@@ -261,6 +264,7 @@ class Piece {
   /// Something moved a little around it.
   void loosen(VertexIndex v) {
     vertices[v].loose = vertices[v].touched = true;
+    vertices[v].balanced = false;
     vertices[v].calmness = Vertex::kStirred;
   }
 
