@@ -10,11 +10,11 @@
 
 #include "base/geometry/triangle_tree.h"
 #include "base/mesh/periodic_map.h"
+#include "base/mesh/vertices_by_place.h"
 
 #include <array>
 #include <cstddef>
 #include <cstdint>
-#include <map>
 #include <memory>
 #include <optional>
 #include <string>
@@ -134,19 +134,5 @@ struct PeriodicFaces {
 /// `surface`: with patches, each wholly on one face or on none, and each with one copy at most. Without a cell: empty.
 /// Throws MeshingError if a triangle has no copy.
 PeriodicFaces find_periodic_faces(const SurfaceMesh& surface, const PeriodicCell& cell);
-
-/// Vertices by their coordinates.
-class VerticesByPlace {
- public:
-  void add(Vec3 p, VertexIndex v) { at_.try_emplace({p.x, p.y, p.z}, v); }
-  /// The first one added there; kNone: none.
-  VertexIndex find(Vec3 p) const {
-    const auto it = at_.find({p.x, p.y, p.z});
-    return it == at_.end() ? kNone : it->second;
-  }
-
- private:
-  std::map<std::array<double, 3>, VertexIndex> at_;
-};
 
 }  // namespace octafront
