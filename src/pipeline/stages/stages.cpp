@@ -16,7 +16,7 @@
 #include "improve/curved/curved.h"
 #include "improve/schedule/raise_flat.h"
 #include "improve/schedule/schedule.h"
-#include "improve/shape/slide_interfaces.h"
+#include "improve/schedule/slide_interfaces.h"
 #include "improve/shape/slide_pairs.h"
 #include "pipeline/stages/coarse_input.h"
 #include "pipeline/stages/follow_boundary.h"

@@ -1,4 +1,4 @@
-#include "improve/shape/slide_interfaces.h"
+#include "improve/schedule/slide_interfaces.h"
 
 #include <octafront/quality.h>
 
