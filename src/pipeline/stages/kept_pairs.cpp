@@ -2,8 +2,8 @@
 
 #include <octafront/tet_mesh.h>
 
+#include "base/mesh/face_nodes.h"
 #include "base/mesh/periodic_nodes.h"
-#include "improve/curved/face_nodes.h"
 #include "pipeline/stages/paired_nodes.h"
 
 #include <algorithm>
@@ -29,7 +29,7 @@ class LinksOfPairs {
       for (const Triangle& copy : mesh_.boundary) {
         const Triangle original = original_of(k, copy);
         if (original == copy) continue;
-        curved::visit_nodes_behind_corners(mesh_.order(), [&](const curved::FaceNodes::Weights& weights) {
+        visit_nodes_behind_corners(mesh_.order(), [&](const FaceNodes::Weights& weights) {
           const NodeLink link{k, nodes_.node(copy, weights), nodes_.node(original, weights)};
           if (link.copy != link.original && known.insert({k, link.copy}).second) links.push_back(link);
         });
@@ -52,7 +52,7 @@ class LinksOfPairs {
   }
 
   const TetMesh& mesh_;
-  const curved::FaceNodes nodes_;
+  const FaceNodes nodes_;
   std::vector<std::map<VertexIndex, VertexIndex>> original_;  ///< per period: of copies
 };
 

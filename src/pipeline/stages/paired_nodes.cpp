@@ -3,8 +3,8 @@
 #include "base/core/disjoint_sets.h"
 #include "base/geometry/curved_tet.h"
 #include "base/geometry/quadratic_tet.h"
+#include "base/mesh/face_nodes.h"
 #include "base/mesh/quadratic_nodes.h"
-#include "improve/curved/face_nodes.h"
 
 #include <array>
 #include <map>
@@ -47,9 +47,9 @@ class PairedNodes {
   };
 
   void find_places() {
-    const curved::FaceNodes nodes(mesh_);
+    const FaceNodes nodes(mesh_);
     for (const Triangle& face : mesh_.boundary)
-      curved::visit_nodes_behind_corners(mesh_.order(), [&](const curved::FaceNodes::Weights& weights) {
+      visit_nodes_behind_corners(mesh_.order(), [&](const FaceNodes::Weights& weights) {
         Place place;
         for (std::size_t i = 0; i < 3; ++i)
           if (weights[i] > 0) place.corners[place.count] = face[i], place.weights[place.count++] = weights[i];

@@ -4,7 +4,7 @@
 #include <octafront/tet_mesh.h>
 
 #include "base/core/wording.h"
-#include "improve/curved/face_nodes.h"
+#include "base/mesh/face_nodes.h"
 #include "pipeline/stages/methods.h"
 #include "pipeline/stages/paired_nodes.h"
 #include "pipeline/stages/stages.h"
@@ -122,7 +122,7 @@ class LinkFinder {
       }
       if (!std::binary_search(known.begin(), known.end(), face_key(copy))) refuse(t[0], k);
       if (!nodes_) continue;
-      curved::visit_nodes_behind_corners(mesh_.order(), [&](const curved::FaceNodes::Weights& weights) {
+      visit_nodes_behind_corners(mesh_.order(), [&](const FaceNodes::Weights& weights) {
         original_of[nodes_->node(copy, weights)] = nodes_->node(t, weights);
       });
     }
@@ -140,7 +140,7 @@ class LinkFinder {
 
   const TetMesh& mesh_;
   const PeriodicCell& cell_;
-  std::optional<curved::FaceNodes> nodes_;  ///< of curved meshes
+  std::optional<FaceNodes> nodes_;  ///< of curved meshes
 };
 
 /// Where an original near p lies: in the low faces that all corners of its edge or face are in.

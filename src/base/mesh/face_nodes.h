@@ -1,12 +1,13 @@
 #pragma once
 
-#include "base/geometry/tet_lattice.h"
-#include "improve/curved/mid_nodes.h"
+#include <octafront/tet_mesh.h>
+
+#include "base/mesh/tet_edges.h"
 
 #include <array>
 #include <vector>
 
-namespace octafront::curved {
+namespace octafront {
 
 /// The nodes of the faces of a mesh of order 2 to 4, those of an element that has them.
 class FaceNodes {
@@ -34,4 +35,4 @@ void visit_nodes_behind_corners(int order, const Visit& visit) {
       if (const int k = order - i - j; i < order && j < order && k < order) visit(FaceNodes::Weights{i, j, k});
 }
 
-}  // namespace octafront::curved
+}  // namespace octafront

@@ -1,10 +1,11 @@
-#include "improve/curved/face_nodes.h"
+#include "base/mesh/face_nodes.h"
 
+#include "base/geometry/tet_lattice.h"
 #include "base/mesh/face_table.h"
 
 #include <algorithm>
 
-namespace octafront::curved {
+namespace octafront {
 
 FaceNodes::FaceNodes(const TetMesh& mesh)
     : mesh_(mesh), faces_(faces_of_tets(mesh.tets, mesh.points.size())), side_(faces_.corners.size(), kNone) {
@@ -28,4 +29,4 @@ VertexIndex FaceNodes::node(const Triangle& face, const Weights& weights) const 
   return mesh_.is_second_order() ? mesh_.mid_nodes[t][n - 4] : mesh_.high_nodes[t * mesh_.high_nodes_per_tet() + n - 4];
 }
 
-}  // namespace octafront::curved
+}  // namespace octafront
