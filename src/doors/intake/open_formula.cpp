@@ -4,11 +4,11 @@
 #include "base/core/parallel.h"
 #include "base/core/thread_limit.h"
 #include "base/core/wording.h"
-#include "base/mesh/periodic_cell.h"
 #include "doors/intake/cell.h"
 #include "doors/intake/intake.h"
 #include "images/formulas/geometry.h"
 #include "images/nets/function_surface.h"
+#include "periodic/periodic_cell.h"
 
 #include <algorithm>
 #include <array>

@@ -17,7 +17,7 @@
 #include "improve/schedule/raise_flat.h"
 #include "improve/schedule/schedule.h"
 #include "improve/schedule/slide_interfaces.h"
-#include "improve/shape/slide_pairs.h"
+#include "periodic/slide_pairs.h"
 #include "pipeline/stages/coarse_input.h"
 #include "pipeline/stages/follow_boundary.h"
 #include "pipeline/stages/kept_shape.h"

@@ -1,9 +1,9 @@
 #include <octafront/error.h>
 
 #include "base/geometry/exact_point.h"
-#include "soup/periods/matched.h"
-#include "soup/periods/periods.h"
-#include "soup/periods/rebuilt.h"
+#include "periodic/face_maker.h"
+#include "periodic/make_periodic.h"
+#include "periodic/matched.h"
 
 #include <algorithm>
 #include <cmath>
@@ -16,51 +16,38 @@ namespace octafront {
 namespace {
 
 using periods::CommonDivision;
-using periods::FaceKind;
+using periods::FaceMaker;
 using periods::FaceParts;
 using periods::Rebuilt;
+using periods::VerticesAlong;
 
 /// A new vertex on the edge between two faces comes to the others with the next round.
 constexpr int kMostRounds = 4;
 
-class PeriodMaker {
+class PeriodMaker : FaceMaker {
  public:
   PeriodMaker(SurfaceMesh& surface, const std::array<bool, 3>& along, const RunContext& context)
-      : surface_(surface), context_(context), tolerance_(kSamePlace * bounding_box(surface.points).diagonal()) {
+      : FaceMaker(surface, context) {
     made_.cell = cell_of(bounding_box(surface.points), along);
-    made_.origin.resize(surface.triangles.size());
-    for (std::uint32_t t = 0; t < made_.origin.size(); ++t) made_.origin[t] = t;
-    periods::fill_in(surface);
   }
 
   MadePeriodic run() {
     put_on_faces();
     for (int round = 0; round < kMostRounds; ++round) {
       bool changed = false;
-      for (int axis = 0; axis < 3; ++axis)
-        if (made_.cell.along[axis]) changed = match(axis) || changed;
+      for (const int axis : cell().periods_there()) changed = match(axis) || changed;
       if (!changed) break;
     }
-    periods::name_faces(surface_, cell());
-    return std::move(made_);
+    return made();
   }
 
  private:
-  const PeriodicCell& cell() const { return made_.cell; }
-
-  void move(Vec3& p, Vec3 to) {
-    if (p == to) return;
-    ++made_.moved;
-    made_.largest_move = std::max(made_.largest_move, distance(p, to));
-    p = to;
-  }
-
   /// What nearly lies on a periodic face lies on it.
   void put_on_faces() {
+    const std::vector<int> axes = cell().periods_there();
     for (Vec3& p : surface_.points) {
       Vec3 to = p;
-      for (int axis = 0; axis < 3; ++axis) {
-        if (!cell().along[axis]) continue;
+      for (const int axis : axes) {
         if (std::abs(p[axis] - cell().box.lo[axis]) <= tolerance_) to[axis] = cell().box.lo[axis];
         if (std::abs(p[axis] - cell().box.hi[axis]) <= tolerance_) to[axis] = cell().box.hi[axis];
       }
@@ -68,11 +55,18 @@ class PeriodMaker {
     }
   }
 
+  FaceParts parts_of(int axis, int end) const {
+    const auto is_on = [&](VertexIndex v) {
+      return end == 0 ? cell().is_low(surface_.points[v], axis) : cell().is_high(surface_.points[v], axis);
+    };
+    return periods::parts_of_face(
+        surface_, [&](std::uint32_t t) { return std::ranges::all_of(surface_.triangles[t], is_on); }, is_on);
+  }
+
   /// Makes the two faces of the axis the same. Returns whether something changed.
   bool match(int axis) {
     context_.check();
-    const CellFace low = 2 * static_cast<CellFace>(axis);
-    std::array faces{periods::parts_of_face(surface_, cell(), low), periods::parts_of_face(surface_, cell(), low + 1)};
+    const std::array faces{parts_of(axis, 0), parts_of(axis, 1)};
     for (CellFace k = 0; k < 2; ++k)
       if (faces[k].triangles.empty())
         throw InputError(fmt::format(
@@ -81,7 +75,7 @@ class PeriodMaker {
             kAxisNames[axis], (k == 0 ? cell().box.lo : cell().box.hi)[axis], k == 0 ? "low" : "high",
             kAxisNames[axis]));
     bring_to_copies(axis, faces);
-    if (are_same(axis, faces)) return false;
+    if (are_same(axis, faces[0].triangles, faces[1].triangles)) return false;
     const CommonDivision common = periods::divide_alike(surface_, cell(), axis, faces, tolerance_);
     put_in(axis, faces, common);
     return true;
@@ -89,55 +83,18 @@ class PeriodMaker {
 
   /// Vertices of lines on the high face that nearly have a copy on the low one get its coordinates.
   void bring_to_copies(int axis, const std::array<FaceParts, 2>& faces) {
-    const int u = (axis + 1) % 3, v = (axis + 2) % 3;
-    std::array<std::vector<VertexIndex>, 2> ends;
-    for (int k = 0; k < 2; ++k) {
-      for (const auto& [edge, part] : faces[k].lines) ends[k].insert(ends[k].end(), edge.begin(), edge.end());
-      ends[k].insert(ends[k].end(), faces[k].touched.begin(), faces[k].touched.end());
-      std::sort(ends[k].begin(), ends[k].end(), [&](VertexIndex a, VertexIndex b) {
-        const Vec3 p = surface_.points[a], q = surface_.points[b];
-        return std::array{p[u], p[v]} < std::array{q[u], q[v]};
-      });
-    }
-    for (const VertexIndex b : ends[1]) {
+    const auto ends_of = [](const FaceParts& face) {
+      std::vector<VertexIndex> ends = face.touched;
+      for (const auto& [edge, part] : face.lines) ends.insert(ends.end(), edge.begin(), edge.end());
+      return ends;
+    };
+    const VerticesAlong low(surface_.points, ends_of(faces[0]), (axis + 1) % 3);
+    for (const VertexIndex b : ends_of(faces[1])) {
       Vec3& p = surface_.points[b];
-      auto at = std::lower_bound(ends[0].begin(), ends[0].end(), p[u] - tolerance_,
-                                 [&](VertexIndex a, double x) { return surface_.points[a][u] < x; });
-      double nearest = tolerance_;
-      Vec3 to = p;
-      for (; at != ends[0].end() && surface_.points[*at][u] <= p[u] + tolerance_; ++at) {
-        Vec3 q = surface_.points[*at];
-        q[axis] = p[axis];
-        if (distance(p, q) < nearest) nearest = distance(p, q), to = q;
-      }
-      move(p, to);
+      if (const VertexIndex near = low.nearest(cell().to_low(p, axis), tolerance_); near != kNone)
+        move(p, cell().to_high(surface_.points[near], axis));
     }
   }
-
-  std::array<Vec3, 3> corners_seen_low(std::uint32_t t, int axis) const {
-    std::array<Vec3, 3> p{};
-    for (int i = 0; i < 3; ++i) {
-      p[i] = surface_.points[surface_.triangles[t][i]];
-      p[i][axis] = cell().box.lo[axis];
-    }
-    std::sort(p.begin(), p.end(), [](Vec3 a, Vec3 b) { return std::array{a.x, a.y, a.z} < std::array{b.x, b.y, b.z}; });
-    return p;
-  }
-
-  bool are_same(int axis, const std::array<FaceParts, 2>& faces) const {
-    std::array<std::vector<std::array<Vec3, 3>>, 2> seen;
-    for (int k = 0; k < 2; ++k) {
-      for (const std::uint32_t t : faces[k].triangles) seen[k].push_back(corners_seen_low(t, axis));
-      std::sort(seen[k].begin(), seen[k].end(), [](const auto& s, const auto& t) {
-        for (int i = 0; i < 3; ++i)
-          if (s[i] != t[i]) return std::array{s[i].x, s[i].y, s[i].z} < std::array{t[i].x, t[i].y, t[i].z};
-        return false;
-      });
-    }
-    return seen[0] == seen[1];
-  }
-
-  FaceKind kind_of(std::uint32_t t) const { return {surface_.patch[t], surface_.sides[t], made_.origin[t], kNone}; }
 
   void put_in(int axis, const std::array<FaceParts, 2>& faces, const CommonDivision& common) {
     std::array<std::vector<VertexIndex>, 2> vertex;
@@ -190,23 +147,12 @@ class PeriodMaker {
   int turn(const Triangle& t, int axis) const {
     return arrangement::orient_along(axis, {surface_.points[t[0]]}, {surface_.points[t[1]]}, {surface_.points[t[2]]});
   }
-
-  void take(Rebuilt rebuilt) {
-    made_.origin.clear();
-    for (const FaceKind& kind : rebuilt.kinds) made_.origin.push_back(kind.origin);
-    periods::take(std::move(rebuilt), surface_);
-  }
-
-  SurfaceMesh& surface_;
-  const RunContext& context_;
-  const double tolerance_;
-  MadePeriodic made_;
 };
 
 }  // namespace
 
 MadePeriodic make_periodic(SurfaceMesh& surface, const std::array<bool, 3>& along, const RunContext& context) {
-  return periods::made_of(surface, [&] { return PeriodMaker(surface, along, context).run(); });
+  return PeriodMaker(surface, along, context).run();
 }
 
 }  // namespace octafront

@@ -1,6 +1,6 @@
 #pragma once
 
-// soup/periods: opposite faces made the same. Takes a clean surface or complex, leaves one whose flat faces at both
+// Opposite faces made the same. Takes a clean surface or complex, leaves one whose flat faces at both
 // ends of an axis are the same triangles, the one moved onto the other bit for bit: matched.cpp finds what each face is
 // divided into by the lines of both, same_faces.cpp puts it into the surface. By other maps mapped_faces.cpp: it finds
 // the faces (map_finder.cpp), brings their lines together and copies what is between them.
@@ -8,8 +8,8 @@
 #include <octafront/run_context.h>
 #include <octafront/surface_mesh.h>
 
-#include "base/mesh/periodic_cell.h"
-#include "base/mesh/periods_asked.h"
+#include "periodic/periodic_cell.h"
+#include "periodic/periods_asked.h"
 
 #include <cstdint>
 #include <vector>

@@ -1,8 +1,8 @@
-#include "base/mesh/periods_asked.h"
+#include "periodic/periods_asked.h"
 
 #include <octafront/error.h>
 
-#include "base/mesh/periodic_cell.h"
+#include "periodic/periodic_cell.h"
 
 #include <gtest/gtest.h>
 

@@ -1,10 +1,11 @@
-#include "soup/periods/map_finder.h"
+#include "periodic/map_finder.h"
 
 #include <octafront/error.h>
 
 #include "base/core/wording.h"
 #include "base/geometry/measures.h"
 #include "base/places/places.h"
+#include "periodic/face_names.h"
 
 #include <algorithm>
 #include <array>
@@ -76,7 +77,7 @@ class MapFinder {
       const bool is_low = is_led(
           t, n, [&](Vec3 p) { return map.apply(p); }, [&](Vec3 v) { return map.turn(v); });
       const bool is_high = is_led(
-          t, n, [&](Vec3 p) { return map.undo(p); }, [&](Vec3 v) { return turned_back(map, v); });
+          t, n, [&](Vec3 p) { return map.undo(p); }, [&](Vec3 v) { return map.turn_back(v); });
       if (!is_low && !is_high) continue;
       const auto [a, b, c] = corners(t);
       const Vec3 way = map.apply(centroid(a, b, c)) - centroid(a, b, c);
@@ -89,11 +90,6 @@ class MapFinder {
         "`periodic`: the map {} leads no part of the surface onto another one that looks the other way. Faces that "
         "are triangulated in other ways and curved have to be named: LOW:HIGH= before the map",
         map.in_words()));
-  }
-
-  static Vec3 turned_back(const PeriodicMap& map, Vec3 v) {
-    const std::array<Vec3, 3>& r = map.matrix();
-    return r[0] * v.x + r[1] * v.y + r[2] * v.z;
   }
 
   /// Whether its corners and its middle come onto the surface, the middle onto what looks the other way.

@@ -2,7 +2,7 @@
 
 // What `periodic` says: axes of a box, or other maps.
 
-#include "base/mesh/periodic_map.h"
+#include "periodic/periodic_map.h"
 
 #include <array>
 #include <string>

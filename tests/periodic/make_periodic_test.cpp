@@ -1,4 +1,4 @@
-#include "soup/periods/periods.h"
+#include "periodic/make_periodic.h"
 
 #include <octafront/complex.h>
 #include <octafront/error.h>

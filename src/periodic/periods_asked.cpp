@@ -1,9 +1,9 @@
-#include "base/mesh/periods_asked.h"
+#include "periodic/periods_asked.h"
 
 #include <octafront/error.h>
 
 #include "base/core/doubles.h"
-#include "base/mesh/periodic_cell.h"
+#include "periodic/periodic_cell.h"
 
 #include <algorithm>
 #include <cmath>

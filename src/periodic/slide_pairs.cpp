@@ -1,4 +1,4 @@
-#include "improve/shape/slide_pairs.h"
+#include "periodic/slide_pairs.h"
 
 #include <octafront/quality.h>
 #include <octafront/surface_mesh.h>

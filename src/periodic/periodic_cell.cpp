@@ -1,8 +1,10 @@
-#include "base/mesh/periodic_cell.h"
+#include "periodic/periodic_cell.h"
 
 #include <octafront/error.h>
 
+#include "base/core/wording.h"
 #include "base/geometry/measures.h"
+#include "periodic/face_names.h"
 
 #include <algorithm>
 #include <cmath>
@@ -23,16 +25,6 @@ constexpr double kNearFace = 1e-10;
 /// A place is carried to a copy by so many periods at most: to the opposite corner of a cell.
 constexpr int kMostSteps = 3;
 constexpr Vec3 kNowhere{HUGE_VAL, HUGE_VAL, HUGE_VAL};
-
-using CornerPlaces = std::array<std::array<double, 3>, 3>;
-
-/// The corners of a triangle in an order of their own.
-CornerPlaces places_of(std::array<Vec3, 3> corners) {
-  CornerPlaces places{};
-  for (int i = 0; i < 3; ++i) places[i] = {corners[i].x, corners[i].y, corners[i].z};
-  std::sort(places.begin(), places.end());
-  return places;
-}
 
 std::array<Vec3, 3> corners_at(const SurfaceMesh& surface, std::size_t t) {
   const auto [a, b, c] = surface.triangles[t];
@@ -134,17 +126,15 @@ Vec3 PeriodicCell::settled(Vec3 p, Vec3 a, Vec3 b) const {
   return p;
 }
 
+std::vector<int> PeriodicCell::periods_there() const {
+  std::vector<int> there;
+  for (int k = 0; k < periods(); ++k)
+    if (has(k)) there.push_back(k);
+  return there;
+}
+
 std::string PeriodicCell::name_of_period(int period) const {
   return is_box() ? std::string(1, kAxisNames[static_cast<std::size_t>(period)]) : fmt::format("period {}", period + 1);
-}
-
-std::string name_of_face(CellFace face) {
-  return fmt::format("{}_{}", kAxisNames[face / 2], face % 2 == 0 ? "min" : "max");
-}
-
-std::string name_of_face(const PeriodicCell& cell, CellFace face) {
-  if (cell.is_box()) return name_of_face(face);
-  return fmt::format("periodic_{}_{}", face / 2 + 1, face % 2 == 0 ? "low" : "high");
 }
 
 CellFace face_of_cell(const PeriodicCell& cell, Vec3 a, Vec3 b, Vec3 c) {
@@ -175,26 +165,42 @@ void find_faces_of_patches(const SurfaceMesh& surface, PeriodicCell& cell) {
   }
 }
 
+std::vector<VertexIndex> vertices_on_faces(const SurfaceMesh& surface, const PeriodicCell& cell) {
+  std::vector<VertexIndex> found;
+  if (!cell.is_periodic()) return found;
+  for (std::size_t t = 0; t < surface.triangles.size(); ++t) {
+    const auto [p, q, r] = corners_at(surface, t);
+    const Triangle& on = surface.triangles[t];
+    if (face_of_cell(cell, surface.patch_of(t), p, q, r) != kNone) found.insert(found.end(), on.begin(), on.end());
+  }
+  std::sort(found.begin(), found.end());
+  found.erase(std::unique(found.begin(), found.end()), found.end());
+  return found;
+}
+
 PeriodicFaces find_periodic_faces(const SurfaceMesh& surface, const PeriodicCell& cell) {
-  PeriodicFaces faces{cell, {}, {}, {}, {}};
+  PeriodicFaces faces{cell, {}, {}, {}, {}, {}};
   if (!cell.is_periodic()) return faces;
   const std::size_t count = surface.triangles.size();
   faces.face.resize(count), faces.other.assign(count, kNone);
-  std::vector<std::map<CornerPlaces, std::uint32_t>> low(static_cast<std::size_t>(cell.periods()));
+  std::vector<std::map<std::array<PlaceKey, 3>, std::uint32_t>> low(static_cast<std::size_t>(cell.periods()));
   std::uint32_t patches = 0;
   for (std::uint32_t t = 0; t < count; ++t) {
     const std::array<Vec3, 3> corners = corners_at(surface, t);
     faces.face[t] = face_of_cell(cell, corners[0], corners[1], corners[2]);
     patches = std::max(patches, surface.patch_of(t) + 1);
-    if (faces.face[t] != kNone && faces.face[t] % 2 == 0) low[faces.face[t] / 2].emplace(places_of(corners), t);
+    if (faces.face[t] != kNone && faces.face[t] % 2 == 0) low[faces.face[t] / 2].emplace(keys_of(corners), t);
   }
   faces.copy_of_patch.assign(patches, kNone), faces.is_copied.assign(patches, 0);
+  faces.face_of_patch.assign(patches, kNone);
   for (std::uint32_t t = 0; t < count; ++t) {
-    if (faces.face[t] == kNone || faces.face[t] % 2 == 0) continue;
+    if (faces.face[t] == kNone) continue;
+    faces.face_of_patch[surface.patch_of(t)] = faces.face[t];
+    if (faces.face[t] % 2 == 0) continue;
     const std::uint32_t period = faces.face[t] / 2;
     std::array<Vec3, 3> corners = corners_at(surface, t);
     for (Vec3& p : corners) p = cell.to_low(p, static_cast<int>(period));
-    const auto at = low[period].find(places_of(corners));
+    const auto at = low[period].find(keys_of(corners));
     if (at == low[period].end()) continue;
     faces.other[t] = at->second, faces.other[at->second] = t;
     faces.copy_of_patch[surface.patch_of(at->second)] = surface.patch_of(t);
@@ -203,9 +209,8 @@ PeriodicFaces find_periodic_faces(const SurfaceMesh& surface, const PeriodicCell
   for (std::uint32_t t = 0; t < count; ++t)
     if (faces.face[t] != kNone && faces.other[t] == kNone) {
       const std::array<Vec3, 3> at = corners_at(surface, t);
-      throw MeshingError(
-          fmt::format("a triangle of the face {} at ({:.6g}, {:.6g}, {:.6g}) has no copy on the opposite face",
-                      name_of_face(cell, faces.face[t]), at[0].x, at[0].y, at[0].z));
+      throw MeshingError(fmt::format("a triangle of the face {} at {} has no copy on the opposite face",
+                                     name_of_face(cell, faces.face[t]), at_point(at[0])));
     }
   return faces;
 }

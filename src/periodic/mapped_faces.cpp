@@ -2,9 +2,10 @@
 
 #include "base/core/wording.h"
 #include "base/geometry/measures.h"
-#include "soup/periods/map_finder.h"
-#include "soup/periods/periods.h"
-#include "soup/periods/rebuilt.h"
+#include "periodic/face_maker.h"
+#include "periodic/face_names.h"
+#include "periodic/make_periodic.h"
+#include "periodic/map_finder.h"
 
 #include <algorithm>
 #include <array>
@@ -19,16 +20,15 @@ namespace octafront {
 namespace {
 
 using periods::FaceKind;
+using periods::FaceMaker;
+using periods::FaceParts;
 using periods::Rebuilt;
+using periods::VerticesAlong;
 
 /// A new vertex on a line that two faces share comes to others with the next round.
 constexpr int kMostMapRounds = 6;
 /// A face is flat where no vertex is farther from its plane than this part of the diagonal.
 constexpr double kFlat = 1e-9;
-
-Edge line_between(VertexIndex a, VertexIndex b) {
-  return {std::min(a, b), std::max(a, b)};
-}
 
 /// The lines at which parts of a face end, and walls that end on it.
 struct FaceLines {
@@ -37,19 +37,16 @@ struct FaceLines {
   std::set<VertexIndex> vertices;
 };
 
-class MapMaker {
+class MapMaker : FaceMaker {
  public:
   MapMaker(SurfaceMesh& surface, const std::vector<AskedMap>& asked, const RunContext& context)
-      : surface_(surface), context_(context), diagonal_(bounding_box(surface.points).diagonal()) {
+      : FaceMaker(surface, context) {
     double largest = 0;
     for (const Vec3 p : surface.points) largest = std::max({largest, std::abs(p.x), std::abs(p.y), std::abs(p.z)});
     std::vector<PeriodicMap> maps;
     for (const AskedMap& map : asked) maps.push_back(map.map);
     made_.cell = mapped_cell(maps, largest);
-    made_.origin.resize(surface.triangles.size());
-    for (std::uint32_t t = 0; t < made_.origin.size(); ++t) made_.origin[t] = t;
-    periods::fill_in(surface);
-    face_ = periods::mapped_faces(surface, made_.cell, asked, tolerance());
+    face_ = periods::mapped_faces(surface, cell(), asked, tolerance_);
   }
 
   MadePeriodic run() {
@@ -59,62 +56,39 @@ class MapMaker {
       if (round == kMostMapRounds)
         throw InputError("`periodic`: the maps do not lead the lines of the faces back onto each other");
       changed = false;
-      for (int k = 0; k < made_.cell.periods(); ++k) changed = match(k) || changed;
+      for (int k = 0; k < cell().periods(); ++k) changed = match(k) || changed;
     }
-    for (int k = 0; k < made_.cell.periods(); ++k) describe(k);
-    periods::name_faces(surface_, made_.cell);
-    return std::move(made_);
+    for (int k = 0; k < cell().periods(); ++k) describe(k);
+    return made();
   }
 
  private:
-  double tolerance() const { return kSamePlace * diagonal_; }
-  const PeriodicMap& map_of(int k) const { return made_.cell.mapped[static_cast<std::size_t>(k)].map; }
-  FaceKind kind_of(std::uint32_t t) const { return {surface_.patch[t], surface_.sides[t], made_.origin[t], face_[t]}; }
+  const PeriodicMap& map_of(int k) const { return cell().mapped[static_cast<std::size_t>(k)].map; }
   bool is_low(CellFace face) const { return face != kNone && face % 2 == 0; }
-
-  void move(Vec3& p, Vec3 to) {
-    if (p == to) return;
-    const double by = distance(p, to);
-    // What comes to the grid is not worth telling.
-    if (by > made_.cell.grid) ++made_.moved, made_.largest_move = std::max(made_.largest_move, by);
-    p = to;
-  }
 
   /// Vertices of faces near the axis of a rotation lie on it, those of low faces on the grid.
   void put_on_grid() {
     for (std::uint32_t t = 0; t < face_.size(); ++t) {
       if (face_[t] == kNone) continue;
       for (const VertexIndex v : surface_.triangles[t]) {
-        Vec3 p = map_of(static_cast<int>(face_[t] / 2)).onto_axis(surface_.points[v], tolerance());
-        if (is_low(face_[t]) || p != surface_.points[v]) p = made_.cell.on_grid(p);
+        Vec3 p = map_of(static_cast<int>(face_[t] / 2)).onto_axis(surface_.points[v], tolerance_);
+        if (is_low(face_[t]) || p != surface_.points[v]) p = cell().on_grid(p);
         move(surface_.points[v], p);
       }
     }
   }
 
   FaceLines lines_of(CellFace face) const {
-    FaceLines lines;
-    std::map<std::pair<Edge, std::array<std::uint32_t, 3>>, int> uses;
-    std::set<VertexIndex> on_face;
-    for (std::uint32_t t = 0; t < face_.size(); ++t) {
-      if (face_[t] != face) continue;
-      lines.triangles.push_back(t);
-      const Triangle& c = surface_.triangles[t];
-      for (int i = 0; i < 3; ++i)
-        ++uses[{line_between(c[i], c[(i + 1) % 3]), {surface_.patch[t], surface_.sides[t][0], surface_.sides[t][1]}}];
-      on_face.insert(c.begin(), c.end());
+    std::vector<std::uint8_t> on_face(surface_.points.size(), 0);
+    for (std::uint32_t t = 0; t < face_.size(); ++t)
+      for (const VertexIndex v : surface_.triangles[t]) on_face[v] |= face_[t] == face;
+    FaceParts parts = periods::parts_of_face(
+        surface_, [&](std::uint32_t t) { return face_[t] == face; }, [&](VertexIndex v) { return on_face[v] != 0; });
+    FaceLines lines{std::move(parts.triangles), {}, {parts.touched.begin(), parts.touched.end()}};
+    for (const auto& [edge, part] : parts.lines) {
+      lines.edges.insert(edge);
+      lines.vertices.insert(edge.begin(), edge.end());
     }
-    std::set<Edge> inner;
-    for (const auto& [edge, count] : uses) (count == 1 ? lines.edges : inner).insert(edge.first);
-    for (std::uint32_t t = 0; t < face_.size(); ++t) {
-      if (face_[t] == face) continue;
-      const Triangle& c = surface_.triangles[t];
-      for (int i = 0; i < 3; ++i) {
-        if (on_face.contains(c[i])) lines.vertices.insert(c[i]);
-        if (const Edge e = line_between(c[i], c[(i + 1) % 3]); inner.contains(e)) lines.edges.insert(e);
-      }
-    }
-    for (const Edge& e : lines.edges) lines.vertices.insert(e.begin(), e.end());
     return lines;
   }
 
@@ -126,12 +100,12 @@ class MapMaker {
     for (CellFace end = 0; end < 2; ++end)
       if (lines[end].triangles.empty())
         throw InputError(fmt::format("`periodic`: the map {} leads from or to nothing: there is no face {}",
-                                     map_of(k).in_words(), name_of_face(made_.cell, low + end)));
+                                     map_of(k).in_words(), name_of_face(cell(), low + end)));
     const bool divided = divide_lines(k, lines);
     if (divided) lines = {lines_of(low), lines_of(low + 1)};
     const std::map<VertexIndex, VertexIndex> copy_of = bring_together(k, lines);
     require_same_lines(k, lines, copy_of);
-    if (!divided && are_same(k, lines)) return false;
+    if (!divided && are_same(k, lines[0].triangles, lines[1].triangles)) return false;
     copy_triangles(k, lines, copy_of);
     return true;
   }
@@ -140,20 +114,11 @@ class MapMaker {
 
   /// The vertices of one face by the nearest ones of the other, within the tolerance; kNone where there is none.
   std::map<VertexIndex, VertexIndex> nearest_on_other(int k, const std::array<FaceLines, 2>& lines, int end) const {
-    std::vector<VertexIndex> others(lines[static_cast<std::size_t>(1 - end)].vertices.begin(),
-                                    lines[static_cast<std::size_t>(1 - end)].vertices.end());
-    const auto x = [&](VertexIndex v) { return surface_.points[v].x; };
-    std::sort(others.begin(), others.end(), [&](auto a, auto b) { return x(a) < x(b); });
+    const std::set<VertexIndex>& others = lines[static_cast<std::size_t>(1 - end)].vertices;
+    const VerticesAlong there(surface_.points, {others.begin(), others.end()}, 0);
     std::map<VertexIndex, VertexIndex> nearest;
-    for (const VertexIndex v : lines[static_cast<std::size_t>(end)].vertices) {
-      const Vec3 p = led(surface_.points[v], k, end);
-      double best = tolerance();
-      VertexIndex& found = nearest[v] = kNone;
-      auto at =
-          std::lower_bound(others.begin(), others.end(), p.x - best, [&](auto o, double to) { return x(o) < to; });
-      for (; at != others.end() && x(*at) <= p.x + tolerance(); ++at)
-        if (const double d = distance(p, surface_.points[*at]); d <= best) best = d, found = *at;
-    }
+    for (const VertexIndex v : lines[static_cast<std::size_t>(end)].vertices)
+      nearest[v] = there.nearest(led(surface_.points[v], k, end), tolerance_);
     return nearest;
   }
 
@@ -167,12 +132,12 @@ class MapMaker {
       for (const auto& [v, other] : nearest_on_other(k, lines, end)) {
         if (other != kNone) continue;
         const Vec3 p = led(surface_.points[v], k, end);
-        const TriangleTree::Nearest at = tree.nearest(p, tolerance() * tolerance());
+        const TriangleTree::Nearest at = tree.nearest(p, tolerance_ * tolerance_);
         if (at.triangle == kNone) refuse(k, end, surface_.points[v]);
         const Edge& edge = edges[at.triangle];
         const Vec3 a = surface_.points[edge[0]], b = surface_.points[edge[1]];
         on[edge].emplace_back(dot(p - a, b - a), static_cast<VertexIndex>(surface_.points.size()));
-        surface_.points.push_back(end == 0 ? p : made_.cell.on_grid(p));
+        surface_.points.push_back(end == 0 ? p : cell().on_grid(p));
       }
     }
     if (on.empty()) return false;
@@ -207,28 +172,12 @@ class MapMaker {
                           const std::map<VertexIndex, VertexIndex>& copy_of) const {
     std::set<Edge> led_there;
     for (const Edge& e : lines[0].edges) {
-      const Edge copy = line_between(copy_of.at(e[0]), copy_of.at(e[1]));
+      const Edge copy = sorted_edge(copy_of.at(e[0]), copy_of.at(e[1]));
       if (!lines[1].edges.contains(copy)) refuse(k, 0, (surface_.points[e[0]] + surface_.points[e[1]]) * 0.5);
       led_there.insert(copy);
     }
     for (const Edge& e : lines[1].edges)
       if (!led_there.contains(e)) refuse(k, 1, (surface_.points[e[0]] + surface_.points[e[1]]) * 0.5);
-  }
-
-  bool are_same(int k, const std::array<FaceLines, 2>& lines) const {
-    std::array<std::set<std::array<std::array<double, 3>, 3>>, 2> seen;
-    for (std::size_t end = 0; end < 2; ++end)
-      for (const std::uint32_t t : lines[end].triangles) {
-        std::array<std::array<double, 3>, 3> places{};
-        for (std::size_t i = 0; i < 3; ++i) {
-          Vec3 p = surface_.points[surface_.triangles[t][i]];
-          if (end == 0) p = map_of(k).apply(p);
-          places[i] = {p.x, p.y, p.z};
-        }
-        std::sort(places.begin(), places.end());
-        seen[end].insert(places);
-      }
-    return seen[0] == seen[1];
   }
 
   void copy_triangles(int k, const std::array<FaceLines, 2>& lines, std::map<VertexIndex, VertexIndex> copy_of) {
@@ -254,12 +203,6 @@ class MapMaker {
     }
     made_.imprinted += lines[0].triangles.size();
     take(std::move(to));
-  }
-
-  void take(Rebuilt rebuilt) {
-    face_.clear(), made_.origin.clear();
-    for (const FaceKind& kind : rebuilt.kinds) face_.push_back(kind.face), made_.origin.push_back(kind.origin);
-    periods::take(std::move(rebuilt), surface_);
   }
 
   /// What the cell knows of its faces: where they are, and whether they are flat.
@@ -290,21 +233,15 @@ class MapMaker {
     throw InputError(fmt::format(
         "the map {} does not lead the faces onto each other: {} has a line at {} that {} has not at {}. Both must have "
         "the same outline, and the same lines where walls and patches end on them",
-        map_of(k).in_words(), name_of_face(made_.cell, has), at_point(at), name_of_face(made_.cell, has ^ 1u),
+        map_of(k).in_words(), name_of_face(cell(), has), at_point(at), name_of_face(cell(), has ^ 1u),
         at_point(led(at, k, end))));
   }
-
-  SurfaceMesh& surface_;
-  const RunContext& context_;
-  const double diagonal_;
-  std::vector<CellFace> face_;  ///< per triangle
-  MadePeriodic made_;
 };
 
 }  // namespace
 
 MadePeriodic make_periodic(SurfaceMesh& surface, const std::vector<AskedMap>& maps, const RunContext& context) {
-  return periods::made_of(surface, [&] { return MapMaker(surface, maps, context).run(); });
+  return MapMaker(surface, maps, context).run();
 }
 
 }  // namespace octafront

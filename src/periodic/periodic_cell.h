@@ -9,8 +9,8 @@
 #include <octafront/vec.h>
 
 #include "base/geometry/triangle_tree.h"
-#include "base/mesh/periodic_map.h"
 #include "base/mesh/vertices_by_place.h"
+#include "periodic/periodic_map.h"
 
 #include <array>
 #include <cstddef>
@@ -51,6 +51,8 @@ struct PeriodicCell {
   /// Periods are numbered below this; those of a box by axis, so some may be none.
   int periods() const { return is_box() ? 3 : static_cast<int>(mapped.size()); }
   bool has(int period) const { return is_box() ? along[period] : true; }
+  /// Those that there are, ascending.
+  std::vector<int> periods_there() const;
   /// Of a box: hi - lo in double precision; lo + period is hi exactly.
   double period(int axis) const { return box.hi[axis] - box.lo[axis]; }
 
@@ -106,11 +108,6 @@ PeriodicCell cell_of(Box3 box, const std::array<bool, 3>& along);
 /// A cell of other periods, whose faces are not known yet: the grid is that for coordinates up to `largest`.
 PeriodicCell mapped_cell(const std::vector<PeriodicMap>& maps, double largest);
 
-/// "x_min", "x_max", ... of a box.
-std::string name_of_face(CellFace face);
-/// The same of any cell: "periodic_1_low", ...
-std::string name_of_face(const PeriodicCell& cell, CellFace face);
-
 /// The periodic face of the cell that a triangle of its surface lies in; kNone: in none. The triangles are those that
 /// the cell was made of, of a box any.
 CellFace face_of_cell(const PeriodicCell& cell, Vec3 a, Vec3 b, Vec3 c);
@@ -120,6 +117,9 @@ CellFace face_of_cell(const PeriodicCell& cell, std::uint32_t patch, Vec3 a, Vec
 /// Fills in the faces of the patches of the surface that the cell was made of.
 void find_faces_of_patches(const SurfaceMesh& surface, PeriodicCell& cell);
 
+/// The vertices of a surface of the cell that lie on periodic faces, ascending.
+std::vector<VertexIndex> vertices_on_faces(const SurfaceMesh& surface, const PeriodicCell& cell);
+
 /// What of a surface is a copy of what: of one whose triangles on opposite faces are the same.
 struct PeriodicFaces {
   PeriodicCell cell;
@@ -127,6 +127,7 @@ struct PeriodicFaces {
   std::vector<std::uint32_t> other;          ///< per triangle: the one on the opposite face; kNone without
   std::vector<std::uint32_t> copy_of_patch;  ///< per patch at a low end: the one that is its copy; kNone for others
   std::vector<std::uint8_t> is_copied;       ///< per patch: it is a copy
+  std::vector<CellFace> face_of_patch;       ///< per patch; kNone: on no periodic face
 
   bool is_copy(std::uint32_t patch) const { return patch < is_copied.size() && is_copied[patch] != 0; }
 };

@@ -1,10 +1,12 @@
-#include "soup/periods/matched.h"
+#include "periodic/matched.h"
 
 #include <octafront/error.h>
 
+#include "base/core/wording.h"
 #include "base/geometry/measures.h"
 #include "base/geometry/plane_mesh.h"
 #include "base/geometry/triangle_tree.h"
+#include "periodic/face_names.h"
 
 #include <algorithm>
 #include <utility>
@@ -46,9 +48,7 @@ std::vector<Line> lines_of(const SurfaceMesh& surface, const PeriodicCell& cell,
 std::vector<Vec3> ends_of(const std::vector<Line>& lines) {
   std::vector<Vec3> ends;
   for (const Line& line : lines) ends.insert(ends.end(), {line.way.front(), line.way.back()});
-  std::sort(ends.begin(), ends.end(), [](Vec3 a, Vec3 b) {
-    return std::array{a.x, a.y, a.z} < std::array{b.x, b.y, b.z};
-  });
+  std::ranges::sort(ends, {}, key_of);
   ends.erase(std::unique(ends.begin(), ends.end()), ends.end());
   return ends;
 }
@@ -87,10 +87,10 @@ class Divider {
       : cell_(cell), axis_(axis), lines_(lines), mesh_(plane_of(cell, axis), axis, cell.box) {}
 
   CommonDivision run(std::uint32_t parts_below, const std::vector<Vec3>& points) {
-    for (const Vec3 p : points) node_[key(p)] = mesh_.add_point({p});
+    for (const Vec3 p : points) node_.add(p, mesh_.add_point({p}));
     for (const auto& of_face : lines_)
       for (const Line& line : of_face)
-        for (const Vec3 p : line.way) node_[key(p)] = mesh_.add_point({p});
+        for (const Vec3 p : line.way) node_.add(p, mesh_.add_point({p}));
     for (std::uint32_t side = 0; side < 2; ++side)
       for (const Line& line : lines_[side])
         for (std::size_t i = 0; i + 1 < line.way.size(); ++i)
@@ -111,10 +111,9 @@ class Divider {
     b[(axis + 1) % 3] = cell.box.hi[(axis + 1) % 3], c[(axis + 2) % 3] = cell.box.hi[(axis + 2) % 3];
     return arrangement::plane_through(a, b, c);
   }
-  static std::array<double, 3> key(Vec3 p) { return {p.x, p.y, p.z}; }
 
   void add_segment(Vec3 p, Vec3 q, std::uint32_t part) {
-    const PlaneMesh::Node a = node_.at(key(p)), b = node_.at(key(q));
+    const PlaneMesh::Node a = node_.find(p), b = node_.find(q);
     if (a == b) return;
     mesh_.add_segment(a, b, arrangement::plane_along_axis(p, q, axis_), part);
   }
@@ -151,10 +150,11 @@ class Divider {
     const auto low = 2 * static_cast<CellFace>(axis_);
     at[axis_] = has == 0 ? cell_.box.lo[axis_] : cell_.box.hi[axis_];
     throw InputError(fmt::format(
-        "the body is no cell that is periodic along {}: its face {} has something at ({:.6g}, {:.6g}, {:.6g}) that the "
+        "the body is no cell that is periodic along {}: its face {} has something at {} that the "
         "opposite face {} has not, and so {:.3g} % of these faces differ. Opposite faces must have the same outline; "
         "bodies that cross them are wrapped around where they are given as bodies of their own, with `box`",
-        kAxisNames[axis_], name_of_face(low + has), at.x, at.y, at.z, name_of_face(low + 1 - has), 100 * share));
+        kAxisNames[axis_], name_of_face(cell_, low + has), at_point(at), name_of_face(cell_, low + 1 - has),
+        100 * share));
   }
 
   /// Nodes that lie on the way of a line, exactly, in their order.
@@ -167,7 +167,7 @@ class Divider {
       std::vector<std::uint32_t> found;
       for (std::size_t i = 0; i + 1 < line.way.size(); ++i) {
         const Vec3 p = line.way[i], q = line.way[i + 1];
-        if (i > 0) found.push_back(number(node_.at(key(p))));
+        if (i > 0) found.push_back(number(node_.find(p)));
         std::vector<std::pair<double, std::uint32_t>> inside;
         const double least = std::min(p[u], q[u]), most = std::max(p[u], q[u]);
         auto at = std::lower_bound(by_u.begin(), by_u.end(), least,
@@ -189,45 +189,10 @@ class Divider {
   const int axis_;
   const std::array<std::vector<Line>, 2>& lines_;
   PlaneMesh mesh_;
-  std::map<std::array<double, 3>, PlaneMesh::Node> node_;
+  VerticesByPlace node_;  ///< of the division
 };
 
 }  // namespace
-
-FaceParts parts_of_face(const SurfaceMesh& surface, const PeriodicCell& cell, CellFace face) {
-  FaceParts parts;
-  std::map<std::pair<std::uint32_t, Sides>, std::uint32_t> number;
-  std::map<std::pair<Edge, std::uint32_t>, int> uses;
-  const auto sorted_edge = [](VertexIndex a, VertexIndex b) { return Edge{std::min(a, b), std::max(a, b)}; };
-  const int axis = static_cast<int>(face / 2);
-  const double at_face = (face % 2 == 0 ? cell.box.lo : cell.box.hi)[axis];
-  const auto is_on = [&](VertexIndex v) { return surface.points[v][axis] == at_face; };
-  std::vector<Edge> walls;
-  for (std::uint32_t t = 0; t < surface.triangles.size(); ++t) {
-    const auto [a, b, c] = surface.triangles[t];
-    if (!is_on(a) || !is_on(b) || !is_on(c)) {
-      for (const Edge& e : {Edge{a, b}, Edge{b, c}, Edge{c, a}})
-        if (is_on(e[0]) && is_on(e[1])) walls.push_back(sorted_edge(e[0], e[1]));
-      for (const VertexIndex v : {a, b, c})
-        if (is_on(v)) parts.touched.push_back(v);
-      continue;
-    }
-    const auto [at, is_new] =
-        number.try_emplace({surface.patch_of(t), surface.sides_of(t)}, static_cast<std::uint32_t>(parts.first.size()));
-    if (is_new) parts.first.push_back(t);
-    parts.triangles.push_back(t), parts.part.push_back(at->second);
-    for (const Edge& e : {Edge{a, b}, Edge{b, c}, Edge{c, a}}) ++uses[{sorted_edge(e[0], e[1]), at->second}];
-  }
-  std::sort(walls.begin(), walls.end());
-  for (const auto& [line, count] : uses) {
-    if (count == 1) parts.lines.push_back(line);
-    if (count > 1 && std::binary_search(walls.begin(), walls.end(), line.first))
-      parts.lines.emplace_back(line.first, kNone);
-  }
-  std::sort(parts.touched.begin(), parts.touched.end());
-  parts.touched.erase(std::unique(parts.touched.begin(), parts.touched.end()), parts.touched.end());
-  return parts;
-}
 
 CommonDivision divide_alike(const SurfaceMesh& surface, const PeriodicCell& cell, int axis,
                             const std::array<FaceParts, 2>& faces, double tolerance) {

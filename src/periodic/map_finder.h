@@ -4,8 +4,8 @@
 
 #include <octafront/surface_mesh.h>
 
-#include "base/mesh/periodic_cell.h"
-#include "base/mesh/periods_asked.h"
+#include "periodic/periodic_cell.h"
+#include "periodic/periods_asked.h"
 
 #include <vector>
 

@@ -4,28 +4,15 @@
 
 #include <octafront/surface_mesh.h>
 
-#include "base/mesh/periodic_cell.h"
+#include "periodic/face_maker.h"
+#include "periodic/periodic_cell.h"
 
 #include <array>
 #include <cstdint>
 #include <map>
-#include <utility>
 #include <vector>
 
 namespace octafront::periods {
-
-/// The triangles of a surface on one face of the cell, and the parts that patches and regions divide them into.
-struct FaceParts {
-  std::vector<std::uint32_t> triangles;  ///< ascending
-  std::vector<std::uint32_t> part;       ///< per entry of `triangles`
-  std::vector<std::uint32_t> first;      ///< per part: a triangle of it
-  /// Edges of one triangle of a part, and the part; and with kNone edges within a part at which walls end that are
-  /// not on the face. Vertices of the surface, the lower one first.
-  std::vector<std::pair<Edge, std::uint32_t>> lines;
-  std::vector<VertexIndex> touched;  ///< vertices of triangles that are not on the face
-};
-
-FaceParts parts_of_face(const SurfaceMesh& surface, const PeriodicCell& cell, CellFace face);
 
 /// A triangle of a division: nodes, counter-clockwise seen along the axis, and the parts of both faces that it is of.
 struct CommonPiece {

@@ -3,7 +3,7 @@
 #include <octafront/tet_mesh.h>
 
 #include "base/core/stage.h"
-#include "base/mesh/periodic_cell.h"
+#include "periodic/periodic_cell.h"
 
 namespace octafront {
 

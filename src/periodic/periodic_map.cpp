@@ -1,4 +1,4 @@
-#include "base/mesh/periodic_map.h"
+#include "periodic/periodic_map.h"
 
 #include "base/core/elementary.h"
 
@@ -60,9 +60,7 @@ Vec3 PeriodicMap::apply(Vec3 p) const {
 
 Vec3 PeriodicMap::undo(Vec3 p) const {
   if (!turns_) return p - shift_;
-  if (is_on_axis(p)) return p;
-  const Vec3 q = p - shift_;
-  return rows_[0] * q.x + rows_[1] * q.y + rows_[2] * q.z;
+  return is_on_axis(p) ? p : turn_back(p - shift_);
 }
 
 Vec3 PeriodicMap::onto_axis(Vec3 p, double tolerance) const {

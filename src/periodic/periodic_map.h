@@ -29,6 +29,7 @@ class PeriodicMap {
   Vec3 undo(Vec3 p) const;
   /// Of directions.
   Vec3 turn(Vec3 v) const { return {dot(rows_[0], v), dot(rows_[1], v), dot(rows_[2], v)}; }
+  Vec3 turn_back(Vec3 v) const { return rows_[0] * v.x + rows_[1] * v.y + rows_[2] * v.z; }
 
   /// Moves a point that lies this near to the axis of a rotation onto it.
   Vec3 onto_axis(Vec3 p, double tolerance) const;
