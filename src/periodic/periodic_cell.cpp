@@ -53,6 +53,13 @@ PeriodicCell cell_of(Box3 box, const std::array<bool, 3>& along) {
   return {box, along};
 }
 
+Vec3 put_on_faces(Vec3 p, const Box3& box, const std::array<bool, 3>& along, Vec3 within) {
+  for (int axis = 0; axis < 3; ++axis)
+    for (const double face : {box.lo[axis], box.hi[axis]})
+      if (along[axis] && std::abs(p[axis] - face) <= within[axis]) p[axis] = face;
+  return p;
+}
+
 PeriodicCell mapped_cell(const std::vector<PeriodicMap>& maps, double largest) {
   PeriodicCell cell;
   cell.grid = std::ldexp(1.0, std::ilogb(largest) + 1 - kBitsOfGrid);

@@ -105,6 +105,9 @@ struct PeriodicCell {
 /// The cell that fills the box. Where lo + (hi - lo) is rounded, hi becomes what it is rounded to.
 PeriodicCell cell_of(Box3 box, const std::array<bool, 3>& along);
 
+/// A place on the faces of a box at the ends of these axes, if it is no farther from them than `within`, axis by axis.
+Vec3 put_on_faces(Vec3 p, const Box3& box, const std::array<bool, 3>& along, Vec3 within);
+
 /// A cell of other periods, whose faces are not known yet: the grid is that for coordinates up to `largest`.
 PeriodicCell mapped_cell(const std::vector<PeriodicMap>& maps, double largest);
 

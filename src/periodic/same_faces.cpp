@@ -6,7 +6,6 @@
 #include "periodic/matched.h"
 
 #include <algorithm>
-#include <cmath>
 #include <utility>
 
 #include <fmt/core.h>
@@ -32,7 +31,8 @@ class PeriodMaker : FaceMaker {
   }
 
   MadePeriodic run() {
-    put_on_faces();
+    const Vec3 within{tolerance_, tolerance_, tolerance_};
+    for (Vec3& p : surface_.points) move(p, put_on_faces(p, cell().box, cell().along, within));
     for (int round = 0; round < kMostRounds; ++round) {
       bool changed = false;
       for (const int axis : cell().periods_there()) changed = match(axis) || changed;
@@ -42,19 +42,6 @@ class PeriodMaker : FaceMaker {
   }
 
  private:
-  /// What nearly lies on a periodic face lies on it.
-  void put_on_faces() {
-    const std::vector<int> axes = cell().periods_there();
-    for (Vec3& p : surface_.points) {
-      Vec3 to = p;
-      for (const int axis : axes) {
-        if (std::abs(p[axis] - cell().box.lo[axis]) <= tolerance_) to[axis] = cell().box.lo[axis];
-        if (std::abs(p[axis] - cell().box.hi[axis]) <= tolerance_) to[axis] = cell().box.hi[axis];
-      }
-      move(p, to);
-    }
-  }
-
   FaceParts parts_of(int axis, int end) const {
     const auto is_on = [&](VertexIndex v) {
       return end == 0 ? cell().is_low(surface_.points[v], axis) : cell().is_high(surface_.points[v], axis);

@@ -181,14 +181,6 @@ Image with_halves(const Image& image, const PeriodicMargin& margin) {
   return with_layers(image, layers);
 }
 
-/// Puts what lies on the faces of the cell up to rounding exactly there.
-void lay_flat(const PeriodicCell& cell, double voxel, std::vector<Vec3>& points) {
-  for (Vec3& p : points)
-    for (int axis = 0; axis < 3; ++axis)
-      for (const double face : {cell.box.lo[axis], cell.box.hi[axis]})
-        if (cell.along[axis] && std::abs(p[axis] - face) <= kOnFaceOfCell * voxel) p[axis] = face;
-}
-
 /// The regions of the complex as bodies, by their numbers.
 std::vector<Body> bodies_of_regions(const SurfaceMesh& complex) {
   std::vector<Body> bodies;
@@ -259,7 +251,9 @@ Complex complex_of_periodic_image(const Image& image, const ImageRegions& region
     in_cell.margin[i] = wraps[i] ? kAround : 0;
   }
   Complex complex = complex_of_image(with_halves(image, in_cell.margin), in_cell, context);
-  lay_flat(cell_of_grid(image.grid, world, wraps), smallest_spacing(image.grid), complex.surface.points);
+  const PeriodicCell cell = cell_of_grid(image.grid, world, wraps);
+  const double within = kOnFaceOfCell * smallest_spacing(image.grid);
+  for (Vec3& p : complex.surface.points) p = put_on_faces(p, cell.box, cell.along, {within, within, within});
   complex.notes.push_back(
       "the image is taken as periodic: its cell goes from the middle of the first voxels to that of their "
       "next copies");
