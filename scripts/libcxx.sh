@@ -7,7 +7,7 @@ cd "$(dirname "$0")/.."
 source scripts/lib/apt.sh
 source scripts/lib/static.sh
 work=$PWD/build/libcxx wings=("$@")
-[ $# -gt 0 ] || wings=(sizing fill soup surface improve formats images report doors)
+[ $# -gt 0 ] || wings=(sizing fill soup periodic surface improve formats images report doors)
 need_packages "${build_packages[@]}" librapidcheck-dev python3 dpkg-dev clang-16 libc++-16-dev libc++abi-16-dev
 compiler=(-DCMAKE_C_COMPILER=clang-16 -DCMAKE_CXX_COMPILER=clang++-16 -DCMAKE_CXX_FLAGS=-stdlib=libc++ -DCMAKE_EXE_LINKER_FLAGS=-stdlib=libc++)
 build_tbb_and_fmt "$work" "${compiler[@]}"

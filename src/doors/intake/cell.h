@@ -5,7 +5,7 @@
 #include <octafront/complex.h>
 #include <octafront/domain.h>
 
-#include "base/mesh/periodic_cell.h"
+#include "periodic/periodic_cell.h"
 
 #include <array>
 #include <functional>

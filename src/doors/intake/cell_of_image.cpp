@@ -43,36 +43,46 @@ std::array<int, 3> world_axes(const ImageGrid& grid) {
   return world;
 }
 
-/// The image with voxels from its other end added at both ends of these axes of its own.
-Image with_wrapped_ends(const Image& image, const std::array<bool, 3>& wraps, std::uint32_t added_each) {
+/// Of each layer of voxels of a new image, along each axis, the one that it is a copy of.
+using Layers = std::array<std::vector<std::size_t>, 3>;
+
+Image with_layers(const Image& image, const Layers& layers) {
   const ImageGrid& grid = image.grid;
-  if (wraps[2] && !grid.slices.empty())
-    throw InputError(
-        "the slices of the image do not lie evenly, so that it is not periodic along them: resample it first");
   Image out = image;
-  std::array<std::uint32_t, 3> added{};
-  for (int i = 0; i < 3; ++i) {
-    added[i] = wraps[i] ? added_each : 0;
-    out.grid.size[i] += 2 * added[i];
-  }
-  out.grid.origin = grid.to_world({-double(added[0]), -double(added[1]), wraps[2] ? -double(added[2]) : grid.slice(0)});
+  for (std::size_t a = 0; a < 3; ++a) out.grid.size[a] = static_cast<std::uint32_t>(layers[a].size());
   out.values = std::visit(
       [&](const auto& values) -> Image::Values {
         std::decay_t<decltype(values)> all;
         all.reserve(out.grid.voxels());
-        // What is added and a multiple of the size that is no less: no index falls below 0.
-        const auto at = [&](std::uint32_t index, int i) {
-          const std::uint32_t n = grid.size[i];
-          return (index + (added[i] + n - 1) / n * n - added[i]) % n;
-        };
-        for (std::uint32_t k = 0; k < out.grid.size[2]; ++k)
-          for (std::uint32_t j = 0; j < out.grid.size[1]; ++j)
-            for (std::uint32_t i = 0; i < out.grid.size[0]; ++i)
-              all.push_back(
-                  values[at(i, 0) + std::size_t{grid.size[0]} * (at(j, 1) + std::size_t{grid.size[1]} * at(k, 2))]);
+        for (const std::size_t k : layers[2])
+          for (const std::size_t j : layers[1])
+            for (const std::size_t i : layers[0]) all.push_back(values[i + grid.size[0] * (j + grid.size[1] * k)]);
         return all;
       },
       image.values);
+  return out;
+}
+
+void require_even_slices(const ImageGrid& grid, bool are_wrapped) {
+  if (are_wrapped && !grid.slices.empty())
+    throw InputError(
+        "the slices of the image do not lie evenly, so that it is not periodic along them: resample it first");
+}
+
+/// The image with voxels from its other end added at both ends of these axes of its own.
+Image with_wrapped_ends(const Image& image, const std::array<bool, 3>& wraps, std::uint32_t added_each) {
+  const ImageGrid& grid = image.grid;
+  require_even_slices(grid, wraps[2]);
+  Layers layers;
+  std::array<std::int64_t, 3> added{};
+  for (std::size_t a = 0; a < 3; ++a) {
+    const std::int64_t n = grid.size[a];
+    added[a] = wraps[a] ? added_each : 0;
+    for (std::int64_t i = -added[a]; i < n + added[a]; ++i)
+      layers[a].push_back(static_cast<std::size_t>((i % n + n) % n));
+  }
+  Image out = with_layers(image, layers);
+  out.grid.origin = grid.to_world({-double(added[0]), -double(added[1]), wraps[2] ? -double(added[2]) : grid.slice(0)});
   return out;
 }
 
@@ -159,41 +169,16 @@ class SamePlaces {
 
 /// The image as one of a cell and its margin, as PeriodicMargin says.
 Image with_halves(const Image& image, const PeriodicMargin& margin) {
-  const ImageGrid& grid = image.grid;
-  if (margin[2] > 0 && !grid.slices.empty())
-    throw InputError(
-        "the slices of the image do not lie evenly, so that it is not periodic along them: resample it first");
-  Image out = image;
-  std::array<std::vector<std::size_t>, 3> voxel;  // of each layer
+  require_even_slices(image.grid, margin[2] > 0);
+  Layers layers;
   for (std::size_t a = 0; a < 3; ++a) {
-    const auto n = static_cast<std::int64_t>(grid.size[a]), m = static_cast<std::int64_t>(margin[a]);
-    const std::int64_t layers = m > 0 ? n + 1 + 2 * m : n;
-    for (std::int64_t layer = 0; layer < layers; ++layer) {
-      const std::int64_t in_cell = layer - m;
-      const std::int64_t from = in_cell < 0 ? in_cell + 1 : in_cell > n ? in_cell - 1 : in_cell;
-      voxel[a].push_back(static_cast<std::size_t>((from % n + n) % n));
+    const auto n = static_cast<std::int64_t>(image.grid.size[a]), m = static_cast<std::int64_t>(margin[a]);
+    for (std::int64_t i = -m; i < (m > 0 ? n + 1 + m : n); ++i) {
+      const std::int64_t from = i < 0 ? i + 1 : i > n ? i - 1 : i;
+      layers[a].push_back(static_cast<std::size_t>((from % n + n) % n));
     }
-    out.grid.size[a] = static_cast<std::uint32_t>(layers);
   }
-  out.values = std::visit(
-      [&](const auto& values) -> Image::Values {
-        std::decay_t<decltype(values)> all;
-        all.reserve(out.grid.voxels());
-        for (const std::size_t k : voxel[2])
-          for (const std::size_t j : voxel[1])
-            for (const std::size_t i : voxel[0]) all.push_back(values[i + grid.size[0] * (j + grid.size[1] * k)]);
-        return all;
-      },
-      image.values);
-  return out;
-}
-
-/// Puts what lies on the faces of the cell up to rounding exactly there.
-void lay_flat(const PeriodicCell& cell, double voxel, std::vector<Vec3>& points) {
-  for (Vec3& p : points)
-    for (int axis = 0; axis < 3; ++axis)
-      for (const double face : {cell.box.lo[axis], cell.box.hi[axis]})
-        if (cell.along[axis] && std::abs(p[axis] - face) <= kOnFaceOfCell * voxel) p[axis] = face;
+  return with_layers(image, layers);
 }
 
 /// The regions of the complex as bodies, by their numbers.
@@ -266,7 +251,9 @@ Complex complex_of_periodic_image(const Image& image, const ImageRegions& region
     in_cell.margin[i] = wraps[i] ? kAround : 0;
   }
   Complex complex = complex_of_image(with_halves(image, in_cell.margin), in_cell, context);
-  lay_flat(cell_of_grid(image.grid, world, wraps), smallest_spacing(image.grid), complex.surface.points);
+  const PeriodicCell cell = cell_of_grid(image.grid, world, wraps);
+  const double within = kOnFaceOfCell * smallest_spacing(image.grid);
+  for (Vec3& p : complex.surface.points) p = put_on_faces(p, cell.box, cell.along, {within, within, within});
   complex.notes.push_back(
       "the image is taken as periodic: its cell goes from the middle of the first voxels to that of their "
       "next copies");

@@ -4,11 +4,11 @@
 #include "base/core/parallel.h"
 #include "base/core/thread_limit.h"
 #include "base/core/wording.h"
-#include "base/mesh/periodic_cell.h"
 #include "doors/intake/cell.h"
 #include "doors/intake/intake.h"
 #include "images/formulas/geometry.h"
 #include "images/nets/function_surface.h"
+#include "periodic/periodic_cell.h"
 
 #include <algorithm>
 #include <array>
@@ -128,10 +128,8 @@ Image image_of_function(const SpaceFunction& function, const Cells& cells, Vec3 
 
 /// Puts what lies on the faces of the box up to rounding exactly there.
 void lay_on_faces(SurfaceMesh& surface, const Cells& cells) {
-  for (Vec3& p : surface.points)
-    for (int axis = 0; axis < 3; ++axis)
-      for (const double face : {cells.box.lo[axis], cells.box.hi[axis]})
-        if (std::abs(p[axis] - face) <= kOnFace * cells.side(axis)) p[axis] = face;
+  const Vec3 within{kOnFace * cells.side(0), kOnFace * cells.side(1), kOnFace * cells.side(2)};
+  for (Vec3& p : surface.points) p = put_on_faces(p, cells.box, {true, true, true}, within);
 }
 
 /// Throws InputError unless the values at both ends of the box are the same along these axes.

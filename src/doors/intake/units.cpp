@@ -3,7 +3,7 @@
 #include <octafront/limits.h>
 #include <octafront/units.h>
 
-#include "formats/containers/scanner.h"
+#include "base/core/ascii.h"
 
 #include <algorithm>
 #include <filesystem>

@@ -5,6 +5,7 @@
 
 #include <algorithm>
 #include <map>
+#include <optional>
 
 #include <fmt/core.h>
 
@@ -88,35 +89,20 @@ std::size_t nodes_of_element(const MeshParts& mesh, const MixedCells& cells, std
 
 PeriodicLinks::PeriodicLinks(const MeshParts& mesh, FunctionRef<std::int32_t(std::size_t)> entity_of)
     : mesh_(mesh.mesh()) {
-  std::vector<Originals> originals(mesh_.periods.size());
-  for (const auto& [period, copy, original] : mesh_.periodic_nodes) originals[period][copy] = original;
+  const Originals originals(mesh_);
   std::map<Triangle, std::int32_t> entity_at;
   for (std::size_t f = 0; f < mesh_.boundary.size(); ++f) entity_at[face_key(mesh_.boundary[f])] = entity_of(f);
-  for (std::uint32_t period = 0; period < originals.size(); ++period) {
+  for (std::uint32_t period = 0; period < mesh_.periods.size(); ++period) {
     FaceRoom room;
     for (std::size_t f = 0; f < mesh_.boundary.size(); ++f) {
-      Triangle original{};
-      if (!copied(period, mesh_.boundary[f], originals[period], original)) continue;
-      const auto at = entity_at.find(face_key(original));
+      const std::optional<Triangle> original = originals.of(period, mesh_.boundary[f]);
+      const auto at = original ? entity_at.find(face_key(*original)) : entity_at.end();
       if (at == entity_at.end()) continue;
       auto& pairs = links_[{static_cast<std::int32_t>(period), entity_of(f), at->second}];
       for (const VertexIndex v : mesh.face_nodes(f, room))
-        if (const auto o = originals[period].find(v); o != originals[period].end()) pairs.insert(*o);
-      for (const VertexIndex v : mesh.face_nodes(f, room))
-        if (is_own_copy(mesh_, period, v)) pairs.try_emplace(v, v);
+        if (const VertexIndex o = originals.of(period, v); o != kNone) pairs.try_emplace(v, o);
     }
   }
-}
-
-/// Nodes on the axis of a rotation are copies of themselves.
-bool PeriodicLinks::copied(std::uint32_t period, const Triangle& t, const Originals& original_of,
-                           Triangle& original) const {
-  for (std::size_t i = 0; i < 3; ++i) {
-    const auto at = original_of.find(t[i]);
-    if (at == original_of.end() && !is_own_copy(mesh_, period, t[i])) return false;
-    original[i] = at == original_of.end() ? t[i] : at->second;
-  }
-  return original != t;
 }
 
 std::array<double, 16> PeriodicLinks::matrix_of(std::size_t period) const {

@@ -167,13 +167,11 @@ class PeriodicLinks {
   }
 
  private:
-  using Originals = std::map<VertexIndex, VertexIndex>;
-  bool copied(std::uint32_t period, const Triangle& t, const Originals& original_of, Triangle& original) const;
   /// A period as the sixteen numbers of a matrix.
   std::array<double, 16> matrix_of(std::size_t period) const;
 
   const TetMesh& mesh_;
-  std::map<std::array<std::int32_t, 3>, Originals> links_;
+  std::map<std::array<std::int32_t, 3>, std::map<VertexIndex, VertexIndex>> links_;
 };
 
 }  // namespace octafront::io

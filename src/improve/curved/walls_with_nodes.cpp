@@ -1,6 +1,6 @@
 #include "base/core/renumber.h"
+#include "base/mesh/face_nodes.h"
 #include "improve/curved/curved.h"
-#include "improve/curved/face_nodes.h"
 
 namespace octafront {
 
@@ -8,8 +8,8 @@ namespace {
 
 /// visit(triangle) for each triangle between nodes of the face; they run as the face does.
 template <class Visit>
-void divide(const curved::FaceNodes& nodes, const Triangle& face, int order, const Visit& visit) {
-  using Weights = curved::FaceNodes::Weights;
+void divide(const FaceNodes& nodes, const Triangle& face, int order, const Visit& visit) {
+  using Weights = FaceNodes::Weights;
   const auto triangle = [&](const Weights& a, const Weights& b, const Weights& c) {
     return Triangle{nodes.node(face, a), nodes.node(face, b), nodes.node(face, c)};
   };
@@ -24,7 +24,7 @@ void divide(const curved::FaceNodes& nodes, const Triangle& face, int order, con
 }  // namespace
 
 SurfaceMesh walls_with_nodes(const TetMesh& mesh) {
-  const curved::FaceNodes nodes(mesh);
+  const FaceNodes nodes(mesh);
   SurfaceMesh walls;
   PointsTaken taken(mesh.points);
   const auto add = [&](const std::vector<Triangle>& faces, const std::vector<std::uint32_t>& patch) {

@@ -8,13 +8,13 @@
 #include "base/geometry/triangle_tree.h"
 #include "base/mesh/complex.h"
 #include "base/mesh/face_table.h"
+#include "base/mesh/vertices_by_place.h"
 #include "pipeline/inside/polygons.h"
 
 #include <algorithm>
 #include <array>
 #include <cmath>
 #include <limits>
-#include <map>
 #include <numbers>
 #include <utility>
 
@@ -133,14 +133,13 @@ void add_fin(SurfaceMesh& sheet, const std::array<Vec3, 3>& corners) {
 
 /// Corners at the same place are one vertex, so that fins hang together where their feet do.
 void merge_points(SurfaceMesh& sheet) {
-  std::map<std::array<double, 3>, VertexIndex> at;
+  VerticesByPlace at;
   std::vector<Vec3> points;
   for (Triangle& t : sheet.triangles)
     for (VertexIndex& v : t) {
       const Vec3 p = sheet.points[v];
-      const auto [found, is_new] = at.try_emplace({p.x, p.y, p.z}, static_cast<VertexIndex>(points.size()));
-      if (is_new) points.push_back(p);
-      v = found->second;
+      v = at.add(p, static_cast<VertexIndex>(points.size()));
+      if (v == points.size()) points.push_back(p);
     }
   sheet.points = std::move(points);
 }

@@ -3,11 +3,10 @@
 #include <octafront/error.h>
 
 #include "base/core/groups.h"
+#include "base/mesh/vertices_by_place.h"
 
 #include <algorithm>
-#include <array>
 #include <cmath>
-#include <map>
 #include <utility>
 
 #include <fmt/format.h>
@@ -26,14 +25,12 @@ struct Net {
 
 Net merged(const LineNet& net) {
   Net made;
-  std::map<std::array<double, 3>, VertexIndex> at;
+  VerticesByPlace at;
   std::vector<VertexIndex> number;
   for (const Vec3& p : net.points) {
     if (!is_finite(p)) throw InputError(fmt::format("the line {} has a point that is not finite", net.name));
-    const auto [found, is_new] =
-        at.try_emplace({p.x + 0.0, p.y + 0.0, p.z + 0.0}, static_cast<VertexIndex>(made.points.size()));
-    if (is_new) made.points.push_back(p);
-    number.push_back(found->second);
+    number.push_back(at.add(p, static_cast<VertexIndex>(made.points.size())));
+    if (number.back() == made.points.size()) made.points.push_back(p);
   }
   for (const auto& [a, b] : net.edges) {
     if (a >= number.size() || b >= number.size())

@@ -11,12 +11,11 @@
 #include "base/geometry/self_intersection.h"
 #include "base/mesh/edge_table.h"
 #include "base/mesh/known_surface.h"
+#include "base/mesh/vertices_by_place.h"
 #include "pipeline/stages/adapting.h"
 #include "pipeline/stages/requirements.h"
 #include "pipeline/stages/stages.h"
 
-#include <array>
-#include <map>
 #include <set>
 #include <span>
 #include <string>
@@ -46,24 +45,22 @@ SurfaceMesh tidied_input(const SurfaceMesh& given, Run& run) {
 
 /// From numbers in a surface to those of the first vertices that were at the same places.
 void renumber_as_given(std::vector<VertexIndex>& numbers, const SurfaceMesh& tidy, const SurfaceMesh& given) {
-  const auto key = [](Vec3 p) { return std::array{p.x, p.y, p.z}; };
-  std::map<std::array<double, 3>, VertexIndex> first;
-  if (tidy.points != given.points)
-    for (VertexIndex v = 0; v < given.points.size(); ++v) first.try_emplace(key(given.points[v]), v);
+  if (tidy.points == given.points) return;
+  VerticesByPlace first;
+  for (VertexIndex v = 0; v < given.points.size(); ++v) first.add(given.points[v], v);
   for (VertexIndex& v : numbers)
-    if (v != kNone && !first.empty()) v = first.at(key(tidy.points[v]));
+    if (v != kNone) v = first.find(tidy.points[v]);
 }
 
 /// The vertices that sets want to stay.
 std::vector<VertexIndex> kept_vertices(const SurfaceMesh& surface, std::span<const PlacedSet> sets) {
-  const auto key = [](Vec3 p) { return std::array{p.x + 0.0, p.y + 0.0, p.z + 0.0}; };
-  std::set<std::array<double, 3>> places;
+  std::set<PlaceKey> places;
   for (const PlacedSet& set : sets)
     if (keeps_vertices(set))
-      for (const Vec3& p : set.places) places.insert(key(p));
+      for (const Vec3& p : set.places) places.insert(key_of(p));
   std::vector<VertexIndex> kept;
   for (VertexIndex v = 0; !places.empty() && v < surface.points.size(); ++v)
-    if (places.contains(key(surface.points[v]))) kept.push_back(v);
+    if (places.contains(key_of(surface.points[v]))) kept.push_back(v);
   return kept;
 }
 

@@ -8,6 +8,7 @@
 #include "base/core/wording.h"
 #include "base/shared/packing.h"
 #include "base/shared/shared_tets.h"
+#include "periodic/paired_nodes.h"
 #include "pipeline/inside/fins.h"
 #include "pipeline/stages/agreement.h"
 #include "pipeline/stages/contact_choice.h"

@@ -49,13 +49,9 @@ std::vector<Vec3> ways_of_periods(const TetMesh& mesh, std::span<const Vec3> way
   for (const Vec3& w : ways) farthest = std::max(farthest, length(w));
   std::vector<std::optional<Vec3>> found(mesh.periods.size());
   for (const auto& [period, copy, original] : mesh.periodic_nodes) {
-    Vec3 led = ways[original];
-    if (!mesh.period_rotations.empty()) {
-      const auto& [x, y, z] = mesh.period_rotations[period];
-      led = {dot(x, led), dot(y, led), dot(z, led)};
-    }
-    if (!found[period]) found[period] = ways[copy] - led;
-    if (distance(ways[copy] - led, *found[period]) > kSameWay * farthest)
+    const Vec3 way = ways[copy] - turned_by_period(mesh, period, ways[original]);
+    if (!found[period]) found[period] = way;
+    if (distance(way, *found[period]) > kSameWay * farthest)
       throw InputError(fmt::format(
           "the motion is not periodic: at {} the copy moves by another way than its original leads to (point {} of {})",
           at_point(mesh.points[copy]), copy, original));

@@ -3,21 +3,13 @@
 // Periodic cells in the pipeline: the input's opposite faces made the same, what stays where it is, nodes paired.
 
 #include <octafront/domain.h>
-#include <octafront/error.h>
 
-#include "base/mesh/periodic_cell.h"
+#include "periodic/periodic_cell.h"
 #include "pipeline/stages/run.h"
 
 #include <optional>
-#include <vector>
 
 namespace octafront {
-
-/// Opposite faces of a cell did not become the same.
-class FacesDiffer : public MeshingError {
- public:
-  using MeshingError::MeshingError;
-};
 
 struct Prepared;
 struct TetMesh;
@@ -35,12 +27,12 @@ struct PeriodicDomain {
 /// Throws InputError where opposite faces differ.
 std::optional<PeriodicDomain> made_periodic(const Domain& domain, Run& run);
 
-/// The vertices of a surface of the cell that lie on periodic faces, ascending.
-std::vector<VertexIndex> vertices_on_faces(const SurfaceMesh& surface, const PeriodicCell& cell);
-
 /// Mid-side nodes on periodic faces lie in them, and those of copies where their originals do; where an element would
 /// not be valid then, the edges are straight. Nothing for linear meshes.
 void pair_mid_nodes(TetMesh& mesh, const PeriodicCell& cell, const Stage& stage);
+
+/// The same of a periodic mesh that is improved, by the pairs of its vertices; those nodes become pairs, too.
+void pair_mid_nodes(TetMesh& mesh, Run& run);
 
 /// Leaves periods and pairs of nodes in the mesh; patches that make up one face become one. Throws MeshingError if the
 /// boundary faces of opposite faces are not the same.

@@ -14,9 +14,9 @@
 
 #include "base/geometry/true_geometry.h"
 #include "base/mesh/known_surface.h"
-#include "base/mesh/periodic_cell.h"
 #include "base/shared/shared_tets.h"
 #include "fill/lattice/implicit_domain.h"
+#include "periodic/periodic_cell.h"
 #include "pipeline/stages/closed_patch.h"
 #include "pipeline/stages/layered.h"
 #include "pipeline/stages/run.h"

@@ -6,6 +6,7 @@
 #include "base/geometry/plane_mesh.h"
 #include "base/geometry/predicates.h"
 #include "base/geometry/triangle_tree.h"
+#include "base/mesh/vertices_by_place.h"
 #include "soup/cells/shared_walls.h"
 
 #include <algorithm>
@@ -449,11 +450,8 @@ class BodyMeeting {
   }
 
   void merge_equal_points() {
-    std::map<std::array<double, 3>, VertexIndex> first;
-    const auto number = [&](VertexIndex v) {
-      const Vec3 p = points_[v];
-      return first.try_emplace({p.x + 0.0, p.y + 0.0, p.z + 0.0}, v).first->second;
-    };
+    VerticesByPlace first;
+    const auto number = [&](VertexIndex v) { return first.add(points_[v], v); };
     for (const auto& [v, around] : earlier_.around) number(v);
     for (Triangle& t : later_.triangles)
       for (VertexIndex& v : t) v = number(v);

@@ -6,7 +6,7 @@
 
 #include <octafront/size_field.h>
 
-#include "base/mesh/periodic_cell.h"
+#include "periodic/periodic_cell.h"
 #include "surface/edits/walk.h"
 
 #include <vector>

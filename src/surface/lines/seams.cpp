@@ -4,6 +4,7 @@
 
 #include "base/core/disjoint_sets.h"
 #include "base/geometry/measures.h"
+#include "base/mesh/vertices_by_place.h"
 #include "surface/edits/star_collapse.h"
 
 #include <algorithm>
@@ -63,15 +64,11 @@ class Cutter {
     const PeriodicCell& cell = out_.periods.cell;
     if (!cell.is_periodic()) return;
     // Where one of the copies of an edge is cut, all are.
-    using Places = std::array<std::array<double, 3>, 2>;
     const auto original = [&](std::size_t e) {
       const auto [a, b] = table_.edges[e];
-      const auto [p, q] = cell.originals(std::array{complex_.points[a], complex_.points[b]});
-      Places places{{{p.x, p.y, p.z}, {q.x, q.y, q.z}}};
-      std::sort(places.begin(), places.end());
-      return places;
+      return keys_of(cell.originals(std::array{complex_.points[a], complex_.points[b]}));
     };
-    std::set<Places> cuts;
+    std::set<std::array<PlaceKey, 2>> cuts;
     for (std::size_t e = 0; e < table_.size(); ++e)
       if (cut_[e]) cuts.insert(original(e));
     for (std::size_t e = 0; e < table_.size(); ++e) cut_[e] = cuts.contains(original(e));
@@ -321,18 +318,11 @@ class SeamCurves {
   std::map<Edge, std::vector<HalfEdge>> copies_;  ///< half-edges along seams by the places of their ends
 };
 
-/// Coordinates as a key.
-using Place = std::array<double, 3>;
-
-Place place_of(Vec3 p) {
-  return {p.x, p.y, p.z};
-}
-
 /// Vertices on seams behind their places, sorted: the copies of one vertex of the complex stand side by side.
-std::vector<std::pair<Place, VertexIndex>> copies_on_seams(const WorkingMesh& mesh) {
-  std::vector<std::pair<Place, VertexIndex>> copies;
+std::vector<std::pair<PlaceKey, VertexIndex>> copies_on_seams(const WorkingMesh& mesh) {
+  std::vector<std::pair<PlaceKey, VertexIndex>> copies;
   for (VertexIndex v = 0; v < mesh.points.size(); ++v)
-    if (mesh.outgoing[v] != kNone && mesh.is_sewn(v)) copies.emplace_back(place_of(mesh.points[v]), v);
+    if (mesh.outgoing[v] != kNone && mesh.is_sewn(v)) copies.emplace_back(key_of(mesh.points[v]), v);
   std::ranges::sort(copies);
   return copies;
 }
@@ -373,8 +363,8 @@ class SeamCoarsener {
       : mesh_(mesh), cell_(cell), context_(context), counts_(counts) {
     auto copies = copies_on_seams(mesh);
     for (auto& [place, v] : copies)
-      if (cell.is_periodic()) place = place_of(cell.original({place[0], place[1], place[2]}));
-    std::ranges::stable_sort(copies, {}, &std::pair<Place, VertexIndex>::first);
+      if (cell.is_periodic()) place = key_of(cell.original({place[0], place[1], place[2]}));
+    std::ranges::stable_sort(copies, {}, &std::pair<PlaceKey, VertexIndex>::first);
     for (auto first = copies.begin(); first != copies.end();) {
       const auto last = std::find_if(first, copies.end(), [&](const auto& c) { return c.first != first->first; });
       std::vector<VertexIndex> here;
@@ -401,16 +391,16 @@ class SeamCoarsener {
 
  private:
   /// The place at `v` that is the copy of one at `first`, as v is of first.
-  Place copied(const Place& target, VertexIndex first, VertexIndex v) const {
+  PlaceKey copied(const PlaceKey& target, VertexIndex first, VertexIndex v) const {
     if (mesh_.points[first] == mesh_.points[v]) return target;
-    return place_of(cell_.carried({target[0], target[1], target[2]}, mesh_.points[first], mesh_.points[v]));
+    return key_of(cell_.carried({target[0], target[1], target[2]}, mesh_.points[first], mesh_.points[v]));
   }
 
   /// The seam's half-edge from v to the place, or kNone.
-  HalfEdge towards(VertexIndex v, const Place& place) const {
+  HalfEdge towards(VertexIndex v, const PlaceKey& place) const {
     HalfEdge found = kNone;
     mesh_.for_each_outgoing(v, [&](HalfEdge h) {
-      if (mesh_.is_seam(h) && place_of(mesh_.points[mesh_.end(h)]) == place) found = h;
+      if (mesh_.is_seam(h) && key_of(mesh_.points[mesh_.end(h)]) == place) found = h;
     });
     return found;
   }
@@ -442,14 +432,14 @@ class SeamCoarsener {
   }
 
   bool remove(const std::vector<VertexIndex>& copies, const SeamPass& limits) {
-    std::vector<Place> targets;
+    std::vector<PlaceKey> targets;
     mesh_.for_each_outgoing(copies[0], [&](HalfEdge h) {
-      if (mesh_.is_seam(h)) targets.push_back(place_of(mesh_.points[mesh_.end(h)]));
+      if (mesh_.is_seam(h)) targets.push_back(key_of(mesh_.points[mesh_.end(h)]));
     });
     std::sort(targets.begin(), targets.end());
     std::vector<HalfEdge> chosen, here;
     double best = 0;
-    for (const Place& target : targets) {
+    for (const PlaceKey& target : targets) {
       double worst = 1;
       here.clear();
       for (const VertexIndex v : copies) {
@@ -714,7 +704,7 @@ std::uint64_t divide_repeated_triangles(WorkingMesh& mesh, const KnownSurface& c
 std::vector<VertexIndex> sewn_vertices(const WorkingMesh& mesh) {
   std::vector<VertexIndex> sewn(mesh.points.size());
   for (VertexIndex v = 0; v < sewn.size(); ++v) sewn[v] = v;
-  const std::vector<std::pair<Place, VertexIndex>> copies = copies_on_seams(mesh);
+  const std::vector<std::pair<PlaceKey, VertexIndex>> copies = copies_on_seams(mesh);
   for (std::size_t i = 1; i < copies.size(); ++i)
     if (copies[i].first == copies[i - 1].first) sewn[copies[i].second] = sewn[copies[i - 1].second];
   return sewn;

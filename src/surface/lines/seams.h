@@ -12,7 +12,7 @@
 #include <octafront/run_context.h>
 
 #include "base/mesh/known_surface.h"
-#include "base/mesh/periodic_cell.h"
+#include "periodic/periodic_cell.h"
 #include "surface/edits/coarsen.h"
 #include "surface/edits/working_mesh.h"
 #include "surface/lines/curves.h"

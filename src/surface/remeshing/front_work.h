@@ -7,7 +7,7 @@
 #include "base/core/stage.h"
 #include "base/geometry/leeway.h"
 #include "base/mesh/known_surface.h"
-#include "base/mesh/periodic_cell.h"
+#include "periodic/periodic_cell.h"
 #include "surface/edits/coarsen.h"
 #include "surface/front/insertion.h"
 #include "surface/front/shaping.h"

@@ -1,5 +1,6 @@
 #include "surface/remeshing/periodic_faces.h"
 
+#include "base/core/renumber.h"
 #include "base/geometry/measures.h"
 #include "sizing/field/change_size_field.h"
 
@@ -118,13 +119,7 @@ class FaceCopier {
     for (VertexIndex v = 0; v < surface_.points.size(); ++v) at_.add(surface_.points[v], v);
   }
 
-  int period_of(std::uint32_t patch) {
-    const auto [at, is_new] = period_of_patch_.try_emplace(patch, -1);
-    if (is_new)
-      for (std::size_t t = 0; t < input_.triangles.size() && at->second < 0; ++t)
-        if (input_.patch_of(t) == patch) at->second = static_cast<int>(periods_.face[t] / 2);
-    return at->second;
-  }
+  int period_of(std::uint32_t patch) const { return static_cast<int>(periods_.face_of_patch[patch] / 2); }
 
   VertexIndex copy_of_vertex(VertexIndex v, int period) {
     const Vec3 p = periods_.cell.to_high(surface_.points[v], period);
@@ -158,7 +153,7 @@ class FaceCopier {
     std::vector<Edge>& features = made_.result.features.edges;
     std::vector<Edge> all, copies;
     const auto add = [](std::vector<Edge>& to, const Triangle& t) {
-      for (int i = 0; i < 3; ++i) to.push_back({std::min(t[i], t[(i + 1) % 3]), std::max(t[i], t[(i + 1) % 3])});
+      for (int i = 0; i < 3; ++i) to.push_back(sorted_edge(t[i], t[(i + 1) % 3]));
     };
     for (const Triangle& t : surface_.triangles) add(all, t);
     std::sort(all.begin(), all.end());
@@ -171,7 +166,7 @@ class FaceCopier {
       for (const Edge& e : of) {
         if (!std::binary_search(features.begin(), features.end(), e)) continue;
         const VertexIndex a = copy_of_vertex(e[0], period), b = copy_of_vertex(e[1], period);
-        copies.push_back({std::min(a, b), std::max(a, b)});
+        copies.push_back(sorted_edge(a, b));
       }
     }
     features.insert(features.end(), copies.begin(), copies.end());
@@ -182,29 +177,22 @@ class FaceCopier {
   /// Vertices without triangles go.
   void compact() {
     std::vector<VertexIndex> number(surface_.points.size(), kNone);
-    for (const Triangle& t : surface_.triangles)
-      for (const VertexIndex v : t) number[v] = 0;
-    VertexIndex used = 0;
-    for (VertexIndex v = 0; v < number.size(); ++v) {
-      if (number[v] == kNone) continue;
-      surface_.points[used] = surface_.points[v];
-      made_.vertex_face[used] = made_.vertex_face[v];
-      made_.is_inner[used] = made_.is_inner[v];
-      number[v] = used++;
-    }
-    surface_.points.resize(used), made_.vertex_face.resize(used), made_.is_inner.resize(used);
-    for (Triangle& t : surface_.triangles)
-      for (VertexIndex& v : t) v = number[v];
+    mark_used(surface_.triangles, number);
+    std::vector<VertexIndex> same = number;
+    keep_numbered(made_.vertex_face, same);
+    same = number, keep_numbered(made_.is_inner, same);
+    keep_numbered(surface_.points, number);
+    renumber(surface_.triangles, number);
     Features& features = made_.result.features;
     for (Edge& e : features.edges) e = {number[e[0]], number[e[1]]};
     std::erase_if(features.edges, [](const Edge& e) { return e[0] == kNone || e[1] == kNone; });
     std::sort(features.edges.begin(), features.edges.end());
-    const auto renumber = [&](std::vector<VertexIndex>& list) {
+    const auto keep = [&](std::vector<VertexIndex>& list) {
       for (VertexIndex& v : list) v = number[v];
       std::erase(list, kNone);
       std::sort(list.begin(), list.end());
     };
-    renumber(features.corners), renumber(made_.result.near_limit);
+    keep(features.corners), keep(made_.result.near_limit);
   }
 
   const SurfaceMesh& input_;
@@ -213,7 +201,6 @@ class FaceCopier {
   SurfaceMesh& surface_;
   std::vector<std::uint32_t> low_;  ///< triangles of faces at low ends
   std::map<std::uint32_t, Sides> sides_of_patch_;
-  std::map<std::uint32_t, int> period_of_patch_;
   VerticesByPlace at_;
 };
 

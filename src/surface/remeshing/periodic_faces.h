@@ -2,7 +2,7 @@
 
 // What a periodic cell asks of a round: sizes that are the same on opposite faces, and faces that are the same.
 
-#include "base/mesh/periodic_cell.h"
+#include "periodic/periodic_cell.h"
 #include "surface/remeshing/outcome.h"
 
 namespace octafront::surface {

@@ -6,7 +6,7 @@
 
 #include "base/core/stage.h"
 #include "base/mesh/known_surface.h"
-#include "base/mesh/periodic_cell.h"
+#include "periodic/periodic_cell.h"
 
 #include <cmath>
 #include <cstdint>
