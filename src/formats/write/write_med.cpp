@@ -113,10 +113,8 @@ class MedWriter {
   /// A dataset component by component, with the attributes that all have.
   template <class T, class ValueAt>
   void values(const std::string& path, std::uint64_t components, std::uint64_t count, const ValueAt& value_at) {
-    file_.dataset(path, {components * count}, Hdf5Writer::Fill<T>([&](std::uint64_t first, std::span<T> to) {
-                    for (std::uint64_t i = 0; i < to.size(); ++i)
-                      to[i] = static_cast<T>(value_at((first + i) / count, (first + i) % count));
-                  }));
+    file_.values<T>(path, {components * count},
+                    [&](std::uint64_t i) { return static_cast<T>(value_at(i / count, i % count)); });
     file_.attribute(path, "CGT", 1);
     file_.attribute(path, "NBR", static_cast<std::int32_t>(count));
   }
@@ -277,11 +275,8 @@ class MedWriter {
     file_.attribute(profile, "NBR", static_cast<std::int32_t>(end - begin));
     file_.attribute(profile, "NGA", 1);
     const std::uint64_t count = end - begin;
-    file_.dataset(profile + "/CO", {count * field.components},
-                  Hdf5Writer::Fill<double>([&](std::uint64_t first, std::span<double> to) {
-                    for (std::uint64_t i = 0; i < to.size(); ++i)
-                      to[i] = cells_.value_of(field, begin + (first + i) % count, (first + i) / count);
-                  }));
+    file_.values<double>(profile + "/CO", {count * field.components},
+                         [&](std::uint64_t i) { return cells_.value_of(field, begin + i % count, i / count); });
   }
 
   Hdf5Writer file_;
