@@ -1,5 +1,6 @@
 #include "surface/remeshing/outcome.h"
 
+#include "base/mesh/complex_patches.h"
 #include "surface/edits/crossings.h"
 #include "surface/lines/seams.h"
 
@@ -8,16 +9,6 @@
 namespace octafront::surface {
 
 namespace {
-
-/// The regions on the sides of each patch of a complex.
-std::vector<Sides> sides_of_patches(const SurfaceMesh& complex) {
-  std::vector<Sides> sides;
-  for (std::size_t t = 0; t < complex.sides.size(); ++t) {
-    if (complex.patch[t] >= sides.size()) sides.resize(complex.patch[t] + 1);
-    sides[complex.patch[t]] = complex.sides[t];
-  }
-  return sides;
-}
 
 /// Which vertices of the working mesh its result has: all that live, but for those of backs and of copies.
 std::vector<std::uint8_t> vertices_to_keep(const WorkingMesh& mesh, const std::vector<VertexIndex>& sewn) {
