@@ -54,8 +54,7 @@ class Tetgen {
       if ((first_ != 0 && first_ != 1) || id != first_ + i)
         scan.fail(
             fmt::format("expected node {}, found {}; nodes count from 0 or 1, one after the other", first_ + i, id));
-      const double x = scan.number("a coordinate"), y = scan.number("a coordinate"), z = scan.number("a coordinate");
-      raw_.points.push_back({x, y, z});
+      raw_.points.push_back(scan.point());
       scan.skip_line();
     }
   }
