@@ -1,6 +1,6 @@
-#include "formats/jobs/job_materials.h"
-
 #include <octafront/units.h>
+
+#include "formats/jobs/job_places.h"
 
 #include <algorithm>
 #include <map>

@@ -1,3 +1,4 @@
+
 #include "formats/jobs/job_places.h"
 
 #include <octafront/error.h>

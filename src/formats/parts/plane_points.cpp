@@ -1,6 +1,6 @@
-#include "formats/parts/plane_points.h"
 
-#include <algorithm>
+#include "formats/parts/polygon.h"
+
 #include <utility>
 
 namespace octafront::io {

@@ -3,9 +3,6 @@
 
 #include "formats/parts/polygon.h"
 
-#include "formats/parts/plane_points.h"
-
-#include <algorithm>
 #include <cmath>
 #include <deque>
 #include <utility>

@@ -8,7 +8,7 @@
 #include "formats/containers/hdf5_file.h"
 #include "formats/parts/field_columns.h"
 #include "formats/parts/mixed_cells.h"
-#include "formats/write/aster_job.h"
+#include "formats/write/job_writers.h"
 #include "formats/write/writers.h"
 
 #include <algorithm>

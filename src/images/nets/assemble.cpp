@@ -1,8 +1,7 @@
-#include "images/nets/assemble.h"
 
 #include "base/core/parallel.h"
 #include "base/core/wording.h"
-#include "images/nets/volumes.h"
+#include "images/nets/net_steps.h"
 
 #include <utility>
 

@@ -1,4 +1,4 @@
-#include "images/nets/clean_bands.h"
+#include "images/nets/net_steps.h"
 
 #include <algorithm>
 #include <cmath>

@@ -2,8 +2,8 @@
 #include <octafront/image_surface.h>
 
 #include "base/core/utf8.h"
-#include "images/nets/clean_bands.h"
 #include "images/nets/given_surfaces.h"
+#include "images/nets/net_steps.h"
 
 #include <algorithm>
 #include <array>

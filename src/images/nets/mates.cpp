@@ -1,4 +1,5 @@
-#include "images/nets/mates.h"
+
+#include "images/nets/conflicts.h"
 
 #include <algorithm>
 #include <iterator>

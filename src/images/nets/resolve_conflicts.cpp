@@ -1,8 +1,6 @@
-#include "images/nets/resolve_conflicts.h"
-
 #include "base/core/parallel.h"
 #include "images/nets/conflicts.h"
-#include "images/nets/diagonals.h"
+#include "images/nets/net_steps.h"
 
 #include <algorithm>
 #include <map>

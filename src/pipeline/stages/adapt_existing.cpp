@@ -11,14 +11,10 @@
 #include "adapt/schedule/rim_metric.h"
 #include "adapt/schedule/section.h"
 #include "improve/curved/curved.h"
-#include "pipeline/stages/adapt_section.h"
 #include "pipeline/stages/adapting.h"
-#include "pipeline/stages/kept_items.h"
 #include "pipeline/stages/kept_volumes.h"
 #include "pipeline/stages/requirements.h"
 #include "pipeline/stages/stages.h"
-#include "pipeline/stages/wall_sizes.h"
-#include "pipeline/stages/walls_apart.h"
 
 #include <optional>
 

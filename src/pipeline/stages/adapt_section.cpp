@@ -1,5 +1,3 @@
-#include "pipeline/stages/adapt_section.h"
-
 #include <octafront/error.h>
 #include <octafront/validity.h>
 
@@ -7,8 +5,6 @@
 #include "adapt/schedule/rim_metric.h"
 #include "adapt/schedule/section.h"
 #include "pipeline/stages/adapting.h"
-#include "pipeline/stages/chosen_tets.h"
-#include "pipeline/stages/walls_apart.h"
 
 #include <algorithm>
 

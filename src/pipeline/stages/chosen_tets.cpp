@@ -1,9 +1,8 @@
-#include "pipeline/stages/chosen_tets.h"
-
 #include <octafront/error.h>
 #include <octafront/vec.h>
 
 #include "base/places/places.h"
+#include "pipeline/stages/adapting.h"
 
 #include <algorithm>
 

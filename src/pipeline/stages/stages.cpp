@@ -28,13 +28,11 @@
 #include "pipeline/stages/shell.h"
 #include "sizing/field/expected_tets.h"
 #include "sizing/sources/budget.h"
-#include "sizing/sources/check_size_options.h"
 #include "sizing/sources/curvature.h"
-#include "sizing/sources/kept_surface.h"
 #include "sizing/sources/make_size_field.h"
-#include "sizing/sources/named_sizes.h"
+#include "sizing/sources/sources.h"
 #include "soup/tidy/examine.h"
-#include "surface/remeshing/unfold.h"
+#include "surface/remeshing/mend_folds.h"
 
 #include <algorithm>
 #include <cmath>

@@ -1,9 +1,8 @@
-#include "pipeline/stages/wall_sizes.h"
-
 #include <octafront/surface_mesh.h>
 
 #include "base/core/disjoint_sets.h"
 #include "base/mesh/edge_table.h"
+#include "pipeline/stages/adapting.h"
 
 #include <algorithm>
 #include <cmath>

@@ -1,3 +1,4 @@
+
 #include "report/picture/scales.h"
 
 #include "base/core/elementary.h"

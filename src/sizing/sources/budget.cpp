@@ -1,3 +1,4 @@
+
 #include "sizing/sources/budget.h"
 
 #include "base/core/elementary.h"

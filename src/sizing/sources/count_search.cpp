@@ -1,6 +1,5 @@
-#include "sizing/sources/count_search.h"
-
 #include "base/core/elementary.h"
+#include "sizing/sources/budget.h"
 
 #include <algorithm>
 #include <cmath>

@@ -1,3 +1,4 @@
+
 #include "sizing/sources/make_size_field.h"
 
 #include <octafront/error.h>
@@ -8,13 +9,9 @@
 #include "sizing/field/change_size_field.h"
 #include "sizing/field/expected_tets.h"
 #include "sizing/sources/budget.h"
-#include "sizing/sources/check_size_options.h"
-#include "sizing/sources/count_search.h"
 #include "sizing/sources/source_grid.h"
-#include "sizing/sources/spread.h"
 
 #include <algorithm>
-#include <cmath>
 #include <optional>
 
 #include <fmt/core.h>

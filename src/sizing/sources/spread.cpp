@@ -1,7 +1,6 @@
-#include "sizing/sources/spread.h"
-
 #include "base/core/parallel.h"
 #include "sizing/field/expected_tets.h"
+#include "sizing/sources/make_size_field.h"
 #include "sizing/sources/source_grid.h"
 
 #include <algorithm>

@@ -9,8 +9,7 @@
 #include "base/geometry/predicates.h"
 #include "base/geometry/same_place.h"
 #include "base/geometry/self_intersection.h"
-#include "soup/arrangement/divide.h"
-#include "soup/arrangement/snap.h"
+#include "soup/arrangement/arranging.h"
 
 #include <algorithm>
 #include <array>

@@ -1,6 +1,5 @@
-#include "soup/mend/fin_strips.h"
-
 #include "base/core/disjoint_sets.h"
+#include "soup/mend/caps.h"
 
 #include <unordered_set>
 

@@ -1,4 +1,4 @@
-#include "soup/mend/loops.h"
+#include "soup/mend/caps.h"
 
 #include <algorithm>
 #include <map>

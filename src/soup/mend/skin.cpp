@@ -1,8 +1,6 @@
-#include "soup/mend/skin.h"
-
 #include "base/core/renumber.h"
 #include "base/geometry/measures.h"
-#include "soup/mend/whole_faces.h"
+#include "soup/mend/mend_steps.h"
 
 namespace octafront::mend {
 Skin skin_of_cells(const Arrangement& arranged, const std::vector<Triangle>& given, const Cells& cells,

@@ -1,10 +1,8 @@
-#include "soup/mend/whole_faces.h"
-
 #include "base/geometry/measures.h"
 #include "base/geometry/self_intersection.h"
+#include "soup/mend/mend_steps.h"
 
 #include <algorithm>
-#include <cstdint>
 #include <span>
 #include <utility>
 

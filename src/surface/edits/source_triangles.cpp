@@ -1,8 +1,7 @@
-#include "surface/edits/source_triangles.h"
-
 #include <octafront/surface_mesh.h>
 
 #include "base/core/parallel.h"
+#include "surface/edits/faces_of_input.h"
 
 namespace octafront::surface {
 

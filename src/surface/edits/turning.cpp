@@ -1,9 +1,8 @@
-#include "surface/edits/turning.h"
-
 #include <octafront/surface_mesh.h>
 
 #include "base/core/elementary.h"
 #include "base/geometry/measures.h"
+#include "surface/edits/faces_of_input.h"
 
 #include <algorithm>
 #include <numbers>

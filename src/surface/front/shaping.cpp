@@ -1,11 +1,9 @@
-#include "surface/front/shaping.h"
 
 #include "base/core/elementary.h"
 #include "base/core/parallel.h"
 #include "surface/edits/local_guards.h"
 #include "surface/edits/surface_blocks.h"
-#include "surface/front/lengths.h"
-#include "surface/lines/curve_points.h"
+#include "surface/front/front_steps.h"
 
 #include <algorithm>
 #include <atomic>

@@ -1,10 +1,9 @@
-#include "surface/lines/least_sizes.h"
-
 #include <octafront/surface_mesh.h>
 
 #include "base/core/disjoint_sets.h"
 #include "base/core/elementary.h"
 #include "base/geometry/measures.h"
+#include "surface/lines/line_sizes.h"
 
 #include <algorithm>
 #include <cmath>

@@ -1,5 +1,4 @@
-#include "surface/lines/thinned.h"
-
+#include "surface/lines/line_sizes.h"
 #include "surface/lines/point_grid.h"
 
 #include <algorithm>

@@ -1,7 +1,7 @@
 #include "surface/remeshing/far_places.h"
 
+#include "surface/lines/line_sizes.h"
 #include "surface/lines/seams.h"
-#include "surface/lines/thinned.h"
 #include "surface/remeshing/outcome.h"
 
 #include <algorithm>

@@ -3,7 +3,7 @@
 // The steps of a round in which single surfaces and complexes differ. One object is chosen before the first round.
 
 #include "base/mesh/features.h"
-#include "surface/lines/narrow_strips.h"
+#include "surface/lines/line_sizes.h"
 #include "surface/lines/seams.h"
 #include "surface/remeshing/outcome.h"
 #include "surface/remeshing/round_sizes.h"

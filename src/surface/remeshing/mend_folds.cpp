@@ -1,3 +1,4 @@
+
 #include "surface/remeshing/mend_folds.h"
 
 #include "base/core/disjoint_sets.h"
@@ -9,9 +10,7 @@
 #include "surface/lines/sewn_mesh.h"
 
 #include <algorithm>
-#include <cmath>
 #include <numbers>
-#include <optional>
 #include <queue>
 
 namespace octafront::surface {

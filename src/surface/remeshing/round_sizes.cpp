@@ -1,6 +1,6 @@
 #include "surface/remeshing/round_sizes.h"
 
-#include "surface/lines/thinned.h"
+#include "surface/lines/line_sizes.h"
 
 #include <algorithm>
 #include <utility>

@@ -13,8 +13,7 @@
 #include "support/random.h"
 #include "surface/edits/coarsen.h"
 #include "surface/edits/crossings.h"
-#include "surface/front/insertion.h"
-#include "surface/front/shaping.h"
+#include "surface/front/front_steps.h"
 #include "surface/front/surface_front.h"
 
 #include <algorithm>

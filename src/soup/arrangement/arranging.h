@@ -1,9 +1,13 @@
 #pragma once
 
+// The steps of the arrangement.
+
 #include <octafront/ids.h>
 #include <octafront/run_context.h>
+#include <octafront/vec.h>
 
 #include "base/geometry/exact_point.h"
+#include "soup/arrangement/arrange.h"
 
 #include <array>
 #include <cstdint>
@@ -50,5 +54,29 @@ struct Contacts {
 /// are not degenerate and points without equals.
 Contacts find_contacts(PointTable& table, std::span<const Triangle> triangles,
                        std::span<const std::array<std::uint32_t, 2>> pairs, const RunContext& context);
+
+/// Triangles divided along what they have in common, on exact points.
+struct Divided {
+  std::vector<Triangle> triangles;  ///< of points of the table
+  std::vector<std::vector<Origin>> origins;
+};
+
+/// Divides triangles by their conflicts `pairs`; what touches none comes out as it is. Adds points to the table; equal
+/// points have one number in the result.
+Divided divide(PointTable& table, std::span<const Triangle> triangles,
+               std::span<const std::array<std::uint32_t, 2>> pairs, const RunContext& context);
+
+/// Triangles on their way, each with its origins in the input.
+struct Soup {
+  std::vector<Vec3> points;
+  std::vector<Triangle> triangles;
+  std::vector<std::vector<Origin>> origins;
+};
+
+/// Brings together what nearly meets among the triangles of `pairs`: vertices nearer to each other than `reach` become
+/// the first of them; edges and faces go through vertices that are nearer to them than that (they are divided there,
+/// with all triangles at an edge). Triangles may lose their area. Returns the farthest that a vertex went; what is
+/// divided moves by `reach` at most. Cost: O(n log n).
+double snap(Soup& soup, std::span<const std::array<std::uint32_t, 2>> pairs, double reach);
 
 }  // namespace octafront::arrangement

@@ -1,5 +1,7 @@
 #pragma once
 
+// What label images are asked, and what becomes of them, step by step.
+
 #include <octafront/image.h>
 #include <octafront/run_context.h>
 
@@ -8,6 +10,10 @@
 #include <utility>
 
 namespace octafront::image {
+
+/// The morphological closing of each region by an octahedron of `reach` voxels, into the outside only; voxels that
+/// several regions close over go to the first one. Returns how many voxels were taken.
+std::uint64_t close_gaps(LabelImage& image, std::uint32_t reach, const RunContext& context);
 
 /// What contacts of few voxels became.
 struct ClearedContacts {
@@ -20,5 +26,16 @@ struct ClearedContacts {
 /// the spot, if so the lines between three regions get shorter. No voxel changes twice, none behind the first layer; no
 /// region is lost, or cut in two there.
 ClearedContacts clear_small_contacts(LabelImage& image, double width, const RunContext& context);
+
+// How much of a segmentation is only a voxel thick.
+
+struct Thinness {
+  std::uint64_t faces = 0;  ///< between voxels of different regions
+  std::uint64_t thin = 0;   ///< voxels between two of them along an axis
+  double part() const { return faces == 0 ? 0 : static_cast<double>(thin) / static_cast<double>(faces); }
+};
+
+/// Faces on the image's box do not count.
+Thinness thinness_of(const LabelImage& image);
 
 }  // namespace octafront::image
