@@ -1,11 +1,8 @@
 // TetGen: NAME.node, NAME.ele, and, where they are there, NAME.face and NAME.edge. Numbers count from 0 or 1, as the
 // first node says. Markers and the first attribute of tetrahedra are references.
 
-#include "formats/read/read_tetgen.h"
-
 #include "formats/containers/named_file.h"
 #include "formats/containers/scanner.h"
-#include "formats/parts/raw_mesh.h"
 #include "formats/parts/surface_builder.h"
 #include "formats/read/readers.h"
 

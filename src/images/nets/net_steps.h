@@ -28,12 +28,6 @@ struct LabelSizes {
   LabelSizes(const Lattice& lattice, std::size_t labels);
 };
 
-/// The image with bands cleaned as labels are, and values that say the same, so that its surface still lies between
-/// voxels: those that changed lie in their new band, as near to their old value as that allows. Its notes are those of
-/// cleaning.
-Image cleaned_bands(const Image& image, const std::vector<GreyBand>& bands, const CleanOptions& clean,
-                    const RunContext& context);
-
 /// Gives each quad the diagonal whose triangles keep the voxels on its two sides apart, and of two such ones that with
 /// the larger smallest angle. `x`: the vertices in straight space.
 void choose_diagonals(Net& net, const Lattice& lattice, std::span<const Vec3> x);

@@ -50,11 +50,6 @@ WallDeviation deviation_of(const adapt::Adapted& made);
 void adapt_section(const TetMesh& given, const adapt::MetricField& metric, const adapt::AdaptRules& rules,
                    AdaptedMesh& result, Run& run);
 
-/// Per tet 1 if it is in one of the places, which have semicolons between them (AdaptOptions::only), else 0. Throws
-/// OptionError for what is no place, for names that the mesh has not (with those that it has), and if a place holds no
-/// element.
-std::vector<std::uint8_t> chosen_tets(const TetMesh& mesh, const std::string& places);
-
 // What stays as it is while a mesh is adapted: what the options name, and what the mesh itself has as required.
 
 /// Sets that are added to a mesh for as long as it is adapted, for sets go along with what they hold.
@@ -69,12 +64,6 @@ KeptItems add_kept_items(TetMesh& mesh, const Options& options, const Stage& sta
 void drop_kept_items(TetMesh& mesh, const KeptItems& kept);
 
 // How far the walls of a mesh may stray where nothing is said: small bodies in large domains by their own size.
-
-/// Adds sets of faces to the mesh, for as long as it is adapted, that may stray less than `tolerance`, which is for
-/// walls as large as `diagonal`: those of connected pieces that are less than half, a quarter, ... of that. Where
-/// options.surface.max_deviation is given none are.
-std::vector<adapt::ToleranceOfSet> add_wall_sizes(TetMesh& mesh, const Options& options, double tolerance,
-                                                  double diagonal);
 
 // Walls go where their ground is, each by itself: where a gap is narrower than that moves them they could meet. There
 // they stay as they were.

@@ -1,34 +1,53 @@
 #pragma once
 
-// pipeline/stages: the list of stages. Takes a domain and options, runs the wings one after the other, times them,
-// and leaves a checked mesh and a report. The public face is octafront/generate.h.
-//
-// One function each, in the order of the pipeline. What a stage takes is const and what it makes
-// is new, but for improvement, which changes the mesh in place; any of them can be called alone with a Run of its own.
-
 #include <octafront/domain.h>
+#include <octafront/ids.h>
 #include <octafront/repair.h>
 #include <octafront/second_order.h>
 #include <octafront/size_field.h>
 #include <octafront/tet_mesh.h>
 
+#include "base/geometry/triangle_tree.h"
 #include "base/geometry/true_geometry.h"
+#include "base/mesh/edge_table.h"
 #include "base/mesh/known_surface.h"
 #include "base/mesh/periodic_cell.h"
 #include "base/shared/shared_tets.h"
 #include "fill/lattice/implicit_domain.h"
-#include "pipeline/stages/closed_patch.h"
 #include "pipeline/stages/layered.h"
 #include "pipeline/stages/run.h"
 #include "surface/remeshing/remesh.h"
 
+#include <cstdint>
 #include <optional>
 #include <span>
 #include <utility>
+#include <vector>
 
 namespace octafront {
 
 struct SurfaceMesh;
+
+/// What repair closed (kClosedByRepair). Its rim is no line of the body where the surface goes on smoothly: no element
+/// need follow it. So it is meshed as a part of the patches around it, and named again in the mesh.
+struct ClosedPatch {
+  std::uint32_t patch = kNone;         ///< kNone: nothing was closed
+  std::vector<std::uint8_t> is_in_it;  ///< per triangle of the input; empty: none
+};
+
+/// Finds the patch by its name and gives its triangles to the patches around them.
+ClosedPatch take_closed_patch(SurfaceMesh& surface, const EdgeTable& edges);
+
+/// The triangles of the boundary that lie on it are of that patch again. If there are none, its name goes, if it is the
+/// last. `tree`: over the triangles of the input.
+void name_closed_patch(const ClosedPatch& closed, const TriangleTree& tree, SurfaceMesh& boundary);
+void name_closed_patch(const ClosedPatch& closed, const TriangleTree& tree, TetMesh& mesh);
+
+// pipeline/stages: the list of stages. Takes a domain and options, runs the wings one after the other, times them,
+// and leaves a checked mesh and a report. The public face is octafront/generate.h.
+//
+// One function each, in the order of the pipeline. What a stage takes is const and what it makes
+// is new, but for improvement, which changes the mesh in place; any of them can be called alone with a Run of its own.
 
 /// The input as every later stage needs it.
 struct Prepared {

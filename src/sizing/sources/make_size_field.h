@@ -28,12 +28,6 @@ SizeField make_size_field(const KnownSurface& surface, const SizeOptions& option
 /// with the sources of `options` inside.
 SizeField size_field_of_surface(const KnownSurface& surface, const SizeOptions& options, const Stage& stage);
 
-/// The gradation that the spread of sizes asks for: the least that leaves no more than a part of the elements to places
-/// where sizes only rise, by the prediction on a coarse grid, and no more than `steepest`. kDefaultGradation where all
-/// sizes are alike.
-double gradation_by_spread(const SurfaceMesh& surface, const WantedSizes& wanted, const SizeOptions& options,
-                           double steepest, const RunContext& context);
-
 /// Throws OptionError for values out of range and for contradictions.
 void check_size_options(const SizeOptions& options);
 

@@ -1,5 +1,5 @@
+#include "surface/edits/coarsen.h"
 #include "surface/edits/local_guards.h"
-#include "surface/edits/star_collapse.h"
 #include "surface/edits/sweep.h"
 #include "surface/front/front_steps.h"
 
