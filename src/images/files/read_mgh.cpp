@@ -2,8 +2,8 @@
 // bytes. https://surfer.nmr.mgh.harvard.edu/fswiki/FsTutorial/MghFormat
 
 #include "images/files/byte_source.h"
-#include "images/files/grids.h"
 #include "images/files/image_readers.h"
+#include "images/files/voxels.h"
 
 #include <algorithm>
 #include <bit>

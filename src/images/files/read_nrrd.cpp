@@ -2,10 +2,10 @@
 // https://teem.sourceforge.net/nrrd/format.html. Names of segments are read as 3D Slicer writes them (.seg.nrrd).
 
 #include "formats/containers/scanner.h"
-#include "images/files/grids.h"
 #include "images/files/image_readers.h"
 #include "images/files/masks.h"
 #include "images/files/slice_files.h"
+#include "images/files/voxels.h"
 
 #include <algorithm>
 #include <cmath>

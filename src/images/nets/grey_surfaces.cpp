@@ -5,7 +5,6 @@
 #include "base/core/thread_limit.h"
 #include "images/nets/cell_labels.h"
 #include "images/nets/cells.h"
-#include "images/nets/check_image.h"
 #include "images/nets/conflicts.h"
 #include "images/nets/function_surface.h"
 #include "images/nets/grey_values.h"

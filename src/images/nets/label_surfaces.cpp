@@ -3,7 +3,6 @@
 #include "base/core/thread_limit.h"
 #include "base/core/wording.h"
 #include "images/nets/cell_labels.h"
-#include "images/nets/check_image.h"
 #include "images/nets/conflicts.h"
 #include "images/nets/given_surfaces.h"
 #include "images/nets/net_steps.h"

@@ -3,7 +3,7 @@
 #include <octafront/error.h>
 
 #include "base/core/parallel.h"
-#include "images/nets/fans.h"
+#include "images/nets/lattice.h"
 
 #include <algorithm>
 #include <bit>

@@ -1,8 +1,7 @@
 #pragma once
 
-// The steps from an image to the surface of its labels.
-
 #include <octafront/complex.h>
+#include <octafront/image.h>
 #include <octafront/image_surface.h>
 #include <octafront/run_context.h>
 
@@ -14,11 +13,21 @@
 #include "images/nets/net.h"
 #include "images/nets/stencils.h"
 
+#include <cstddef>
 #include <cstdint>
 #include <span>
 #include <vector>
 
 namespace octafront::nets {
+
+/// Throws InputError if a grid with so many voxels makes no sense, or lies where double precision cannot tell them
+/// apart.
+void check_grid(const ImageGrid& grid, std::size_t voxels);
+
+/// Throws InputError for labels that are not there, or if there is none.
+void check_labels(const LabelImage& image);
+
+// The steps from an image to the surface of its labels.
 
 /// How many voxels each label has, and their volume in straight space.
 struct LabelSizes {

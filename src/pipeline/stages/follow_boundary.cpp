@@ -1,12 +1,8 @@
-#include "pipeline/stages/follow_boundary.h"
-
-#include <octafront/surface_mesh.h>
-
 #include "base/core/parallel.h"
 #include "base/mesh/complex_patches.h"
+#include "pipeline/stages/stages.h"
 
 #include <algorithm>
-#include <vector>
 
 namespace octafront {
 namespace {

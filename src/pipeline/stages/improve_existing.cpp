@@ -11,7 +11,6 @@
 #include "improve/schedule/kept_labels.h"
 #include "improve/schedule/schedule.h"
 #include "pipeline/stages/adapting.h"
-#include "pipeline/stages/follow_boundary.h"
 #include "pipeline/stages/kept_pairs.h"
 #include "pipeline/stages/kept_volumes.h"
 #include "pipeline/stages/requirements.h"

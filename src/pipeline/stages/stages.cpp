@@ -18,8 +18,6 @@
 #include "improve/schedule/schedule.h"
 #include "improve/shape/slide_interfaces.h"
 #include "improve/shape/slide_pairs.h"
-#include "pipeline/stages/coarse_input.h"
-#include "pipeline/stages/follow_boundary.h"
 #include "pipeline/stages/kept_shape.h"
 #include "pipeline/stages/kept_volumes.h"
 #include "pipeline/stages/measure.h"
@@ -37,7 +35,6 @@
 #include <algorithm>
 #include <cmath>
 #include <map>
-#include <optional>
 
 #include <fmt/core.h>
 

@@ -5,6 +5,7 @@
 #include <octafront/repair.h>
 #include <octafront/second_order.h>
 #include <octafront/size_field.h>
+#include <octafront/surface_mesh.h>
 #include <octafront/tet_mesh.h>
 
 #include "base/geometry/triangle_tree.h"
@@ -155,5 +156,27 @@ SurfaceMesh boundary_of(const TetMesh& mesh);
 
 /// Fills in what the report says of every mesh: counts, volume, quality, hash. `comm`: as in measure.h.
 void describe(const TetMesh& mesh, Report& report, const Comm& comm = Comm(nullptr));
+
+// Images have a triangle for each face of a voxel, and scans one for each few points: far more than sizes need that are
+// much coarser.
+
+/// The domain of an image with triangles about half as large as the sizes that are asked for, so that sizes, trees and
+/// the surface front do not work on more; nothing where they are hardly larger than voxels, where sizes are measured on
+/// the surface, or where its triangles must stay.
+std::optional<Domain> coarse_domain(const Domain& domain, Run& run);
+
+/// The surface of one body likewise, if it has very many triangles, much smaller than automatic sizes, the size or the
+/// number of elements that is given, and the user bounds nowhere how far the new surface may stray: within a twentieth
+/// of its mean edge. Not where walls or gaps are about as narrow as that. REQUIRES a clean surface.
+std::optional<SurfaceMesh> coarse_surface(const SurfaceMesh& clean, Run& run);
+
+/// After improvement has moved the boundary: each triangle of the mesh that is no longer the one of `before` gets as
+/// its source that of the triangle of the `input` that is nearest now, found by the `tree` over it. `before`: the
+/// boundary as it was, in the same order.
+void renew_sources(TetMesh& mesh, const SurfaceMesh& before, const SurfaceMesh& input, const TriangleTree& tree);
+
+/// What was filled follows what became of its boundary and interfaces, whose vertices come first in the mesh; of
+/// a complex whose patches have one pair of sides each.
+void follow_boundary(const TetMesh& mesh, SurfaceMesh& filled);
 
 }  // namespace octafront

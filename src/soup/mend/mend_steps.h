@@ -97,13 +97,6 @@ struct Skin {
 Skin skin_of_cells(const Arrangement& arranged, const std::vector<Triangle>& given, const Cells& cells,
                    const Labels& labels, const RunContext& context);
 
-/// Puts faces that were divided, and of which all parts came to be skin, back in the place of their parts: where a fin
-/// that is gone crossed them nothing shall be left of it, for its cuts leave needles by which sizes would go. `given`:
-/// the triangles that were arranged. Points that only such parts use are used no more. The points of `skin` are those
-/// of the arrangement.
-void restore_whole_faces(const Arrangement& arranged, const std::vector<Triangle>& given, Skin& skin,
-                         const RunContext& context);
-
 /// A surface that a lattice found, and how much of it lies away from the walls.
 struct LatticeSkin {
   SurfaceMesh surface;       ///< clean; `source`: the nearest wall of each triangle

@@ -152,12 +152,16 @@ class WholeFaces {
   std::vector<std::uint32_t> face_of_;  ///< per triangle of the skin, the whole face that it is a part of
 };
 
-}  // namespace
-
+/// Puts faces that were divided, and of which all parts came to be skin, back in the place of their parts: where a fin
+/// that is gone crossed them nothing shall be left of it, for its cuts leave needles by which sizes would go. `given`:
+/// the triangles that were arranged. Points that only such parts use are used no more. The points of `skin` are those
+/// of the arrangement.
 void restore_whole_faces(const Arrangement& arranged, const std::vector<Triangle>& given, Skin& skin,
                          const RunContext& context) {
   WholeFaces(arranged, given, skin).restore(context);
 }
+
+}  // namespace
 
 Skin skin_of_cells(const Arrangement& arranged, const std::vector<Triangle>& given, const Cells& cells,
                    const Labels& labels, const RunContext& context) {

@@ -1,6 +1,6 @@
 #include "base/geometry/live_triangles.h"
 #include "base/geometry/measures.h"
-#include "surface/lines/sewn_mesh.h"
+#include "surface/lines/seams.h"
 #include "surface/remeshing/mend_folds.h"
 
 #include <algorithm>

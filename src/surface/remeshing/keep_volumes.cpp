@@ -6,7 +6,7 @@
 #include "base/geometry/measures.h"
 #include "base/geometry/symmetric_matrix.h"
 #include "base/mesh/complex.h"
-#include "surface/edits/crossings.h"
+#include "surface/edits/working_mesh.h"
 #include "surface/remeshing/surface_check.h"
 
 #include <algorithm>

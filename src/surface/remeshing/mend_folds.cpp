@@ -7,7 +7,7 @@
 #include "base/geometry/measures.h"
 #include "base/geometry/predicates.h"
 #include "surface/edits/line_edits.h"
-#include "surface/lines/sewn_mesh.h"
+#include "surface/lines/seams.h"
 
 #include <algorithm>
 #include <numbers>

@@ -3,7 +3,6 @@
 #include <octafront/quality.h>
 #include <octafront/run_context.h>
 
-#include "report/picture/camera.h"
 #include "report/picture/canvas.h"
 #include "report/picture/colours.h"
 #include "report/picture/raster.h"

@@ -12,7 +12,7 @@
 #include "support/named_surfaces.h"
 #include "support/random.h"
 #include "surface/edits/coarsen.h"
-#include "surface/edits/crossings.h"
+#include "surface/edits/working_mesh.h"
 #include "surface/front/front_steps.h"
 #include "surface/front/surface_front.h"
 
