@@ -3,8 +3,6 @@
 // in the mesh. Fields are variables of nodes and elements, each number by itself, in one time step. Blocks of pyramids
 // and wedges behind others of their region have names of their own, "layers_wedges", and numbers behind all.
 
-#include <octafront/error.h>
-
 #include "formats/containers/netcdf_writer.h"
 #include "formats/parts/field_columns.h"
 #include "formats/parts/mixed_cells.h"
@@ -12,7 +10,6 @@
 
 #include <algorithm>
 #include <array>
-#include <limits>
 #include <numeric>
 #include <string>
 
@@ -264,9 +261,8 @@ class ExodusWriter {
 }  // namespace
 
 void write_exodus(MeshOutput& out, const MeshParts& mesh) {
-  constexpr std::size_t kMost = std::numeric_limits<std::int32_t>::max();
-  if (mesh.points() > kMost || mesh.tets() > kMost)
-    throw OutputError(out.target().string() + ": Exodus counts with 32 bits, too few for this mesh; write .vtu");
+  out.require_32_bits(std::max(mesh.points(), mesh.tets()),
+                      "Exodus counts with 32 bits, too few for this mesh; write .vtu");
   ExodusWriter(out, mesh).write();
 }
 

@@ -13,7 +13,6 @@
 
 #include <algorithm>
 #include <array>
-#include <limits>
 #include <string>
 #include <vector>
 
@@ -292,9 +291,8 @@ class MedWriter {
 }  // namespace
 
 void write_med(MeshOutput& out, const MeshParts& mesh) {
-  constexpr std::size_t kMost = std::numeric_limits<std::int32_t>::max();
-  if (mesh.points() > kMost || mesh.tets() > kMost)
-    throw OutputError(out.target().string() + ": MED files have 32-bit numbers, too few for this mesh; write .vtu");
+  out.require_32_bits(std::max(mesh.points(), mesh.tets()),
+                      "MED files have 32-bit numbers, too few for this mesh; write .vtu");
   if (out.job() == nullptr) return MedWriter(out, mesh, nullptr).write();
   const AsterNames names = aster_names(out, mesh, *out.job());
   if (!names.points.empty() && !out.fields().empty())
