@@ -89,7 +89,7 @@ class Coarsener {
         counts_(counts),
         merged_into_(mesh.points.size()),
         blocks_(mesh) {
-    left_ = collect(mesh.points.size(), [&](VertexIndex v) {
+    left_ = parallel_select(mesh.points.size(), [&](VertexIndex v) {
       const bool is_input = mesh.kind[v] == VertexKind::kRemovable || mesh.kind[v] == VertexKind::kRemovableCurve;
       return is_input && mesh.outgoing[v] != kNone && !mesh.is_sewn(v);
     });
@@ -109,17 +109,6 @@ class Coarsener {
   }
 
  private:
-  /// The numbers below n that the test is true for.
-  template <class Test>
-  static std::vector<std::uint32_t> collect(std::size_t n, const Test& test) {
-    constexpr std::size_t kRange = 16384;
-    return parallel_collect<std::uint32_t>(n, kRange,
-                                           [&](std::size_t begin, std::size_t end, std::vector<std::uint32_t>& found) {
-                                             for (auto i = static_cast<std::uint32_t>(begin); i < end; ++i)
-                                               if (test(i)) found.push_back(i);
-                                           });
-  }
-
   /// What could not be collapsed away is a vertex like others from here on.
   void adopt_left() {
     for (const VertexIndex v : left_) {
@@ -133,7 +122,7 @@ class Coarsener {
 
   void flip_all(const TurnLimits& limits) {
     const auto is_first = [&](HalfEdge h) { return h < mesh_.twin[h]; };
-    counts_.flips += make_delaunay(mesh_, blocks_, collect(mesh_.start.size(), is_first), limits);
+    counts_.flips += make_delaunay(mesh_, blocks_, parallel_select(mesh_.start.size(), is_first), limits);
   }
 
   void pass(const PassLimits& limits) {
