@@ -35,10 +35,11 @@ constexpr double kPlaces = kDivisionsOfBalance * kDivisionsOfBalance;
 
 class Balance {
  public:
-  Balance(const Walls& walls, std::span<const std::uint8_t> may_move, std::span<const std::uint32_t> near,
-          const Ground& ground, std::span<const double> tolerance)
+  Balance(const Walls& walls, std::span<const std::uint8_t> may_move, std::span<const std::uint8_t> waits,
+          std::span<const std::uint32_t> near, const Ground& ground, std::span<const double> tolerance)
       : walls_(walls),
         may_move_(may_move),
+        waits_(waits),
         near_(near),
         ground_(ground),
         tolerance_(tolerance),
@@ -48,7 +49,11 @@ class Balance {
   std::vector<Vec3> steps() {
     const std::size_t count = walls_.surface.triangles.size();
     std::vector<std::uint8_t> strays(count, 0);
-    parallel_for(count, [&](std::size_t t) { strays[t] = is_stray(static_cast<std::uint32_t>(t)); });
+    parallel_for(count, [&](std::size_t t) {
+      const Triangle& c = walls_.surface.triangles[t];
+      const bool any_waits = std::any_of(c.begin(), c.end(), [&](VertexIndex v) { return waits_[v] != 0; });
+      strays[t] = any_waits && is_stray(static_cast<std::uint32_t>(t));
+    });
     std::vector<curved::Foot> feet;
     for (std::uint32_t t = 0; t < count; ++t)
       if (strays[t]) feet.push_back({tree_.corners(t)[0], t});
@@ -108,7 +113,7 @@ class Balance {
     for (std::size_t k = 0; k < feet.size(); ++k) share_out(feet[k].on, volumes[k], volume);
     for (std::size_t v = 0; v < step.size(); ++v) {
       const double size = length(normal[v]);
-      if (!may_move_[v] || !(size > kLeastNormal * area[v])) continue;
+      if (!waits_[v] || !(size > kLeastNormal * area[v])) continue;
       // A point that moves takes a third of its normal's volume along.
       const double most = kLongestOfBalance * tolerance[v], way = std::clamp(3 * volume[v] / size, -most, most);
       if (std::abs(way) > kLeastOfBalance * tolerance[v]) step[v] = way / size * normal[v];
@@ -117,7 +122,7 @@ class Balance {
   }
 
   const Walls& walls_;
-  std::span<const std::uint8_t> may_move_;
+  std::span<const std::uint8_t> may_move_, waits_;
   std::span<const std::uint32_t> near_;
   const Ground& ground_;
   std::span<const double> tolerance_;
@@ -128,9 +133,9 @@ class Balance {
 }  // namespace
 
 std::vector<Vec3> steps_to_balance(const Walls& walls, std::span<const std::uint8_t> may_move,
-                                   std::span<const std::uint32_t> near, const Ground& ground,
-                                   std::span<const double> tolerance) {
-  return Balance(walls, may_move, near, ground, tolerance).steps();
+                                   std::span<const std::uint8_t> waits, std::span<const std::uint32_t> near,
+                                   const Ground& ground, std::span<const double> tolerance) {
+  return Balance(walls, may_move, waits, near, ground, tolerance).steps();
 }
 
 }  // namespace octafront::adapt

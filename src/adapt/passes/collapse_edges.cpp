@@ -196,14 +196,17 @@ class EdgeCollapser {
     for (const TetIndex t : plan.old)
       for (const VertexIndex v : piece_.tet(t))
         if (v != plan.gone && v != plan.onto && seen_[v] != stamp_) seen_[v] = stamp_, around_.push_back(v);
-    double longest_had = -1;
-    for (const VertexIndex v : around_) {
-      if (!piece_.is_longer(plan.onto, v, kLongestOfCollapse)) continue;
-      if (longest_had < 0)
-        for (const VertexIndex u : around_) longest_had = std::max(longest_had, piece_.edge_length(plan.gone, u));
-      if (piece_.edge_length(plan.onto, v) > longest_had) return false;
-    }
-    return true;
+    const auto is_long = [&](VertexIndex from) {
+      return [&, from](VertexIndex v) { return piece_.is_longer(from, v, kLongestOfCollapse); };
+    };
+    if (std::none_of(around_.begin(), around_.end(), is_long(plan.onto))) return true;
+    if (std::none_of(around_.begin(), around_.end(), is_long(plan.gone))) return false;
+    const auto longest = [&](VertexIndex from) {
+      double most = 0;
+      for (const VertexIndex v : around_) most = std::max(most, piece_.edge_length(from, v));
+      return most;
+    };
+    return longest(plan.onto) <= longest(plan.gone);
   }
 
   /// The walls at the vertex that goes, with it at its new place; false if they would not be true, or lines would

@@ -37,6 +37,7 @@ struct alignas(64) Vertex {
   bool frozen = false;  ///< asked to stay as it is, with all that is between vertices that are
   bool held = false;    ///< asked to stay as it is, alone
   bool off = false;     ///< on a wall, beside the surface that was given: it is to go there
+  bool balanced = false;  ///< nothing around it changed since walls were balanced
   /// For what mends: kStirred, something around it changed; kSettling, just before the cycle that is under way; kCalm,
   /// all that could be tried around it has been, in vain.
   enum Calmness : std::uint8_t { kCalm, kSettling, kStirred } calmness = kStirred;
@@ -92,23 +93,23 @@ OCTAFRONT_KERNEL SquaredBounds squared_bounds(const Vertex& p, const Vertex& q, 
 }
 /// A vertex on the way between two, without a place or a kind: with its metric where it does not get its own.
 Vertex between(const Vertex& a, const Vertex& b, double part);
-/// The score of a tet with these corners, 0 if it is not positive by exact sign.
-OCTAFRONT_KERNEL float score_of_corners(const std::array<const Vertex*, 4>& c, bool isotropic) {
+/// The score of a tet that is worth so much, 0 if it is not positive by exact sign.
+OCTAFRONT_KERNEL float score_by(double worth, Vec3 p, Vec3 q, Vec3 r, Vec3 s) {
+  return orient3d(p, q, r, s) <= 0 ? 0 : std::max(static_cast<float>(worth), 1e-30f);
+}
+/// The same in metrics of size, which make all lengths longer alike: the shape alone counts.
+OCTAFRONT_KERNEL float score_by_shape(double worth, Vec3 p, Vec3 q, Vec3 r, Vec3 s) {
   // Of elements of a better score the sign of the volume is beyond doubt: rounding is 1e-14 of the edges at most.
   constexpr double kCertainScore = 1e-9;
+  return worth > kCertainScore ? static_cast<float>(worth) : score_by(worth, p, q, r, s);
+}
+/// The score of a tet with these corners, 0 if it is not positive by exact sign.
+OCTAFRONT_KERNEL float score_of_corners(const std::array<const Vertex*, 4>& c, bool isotropic) {
   const Vec3 p = c[0]->at, q = c[1]->at, r = c[2]->at, s = c[3]->at;
   const double det = detail::orient3d_det(p, q, r, s);
-  double worth = 0;
-  if (isotropic) {  // a size makes all lengths longer alike: the shape alone counts
-    worth = metric_score(det, p, q, r, s);
-    if (worth > kCertainScore) return static_cast<float>(worth);
-  }
-  if (orient3d(p, q, r, s) <= 0) return 0;
-  if (!isotropic) {
-    const Vertex& d = densest_of(c);
-    worth = metric_score(det, d.metric, d.density, p, q, r, s);
-  }
-  return std::max(static_cast<float>(worth), 1e-30f);
+  if (isotropic) return score_by_shape(metric_score(det, p, q, r, s), p, q, r, s);
+  const Vertex& d = densest_of(c);
+  return score_by(metric_score(det, d.metric, d.density, p, q, r, s), p, q, r, s);
 }
 
 /// A mesh whose every part carries a number: tets, half-faces on walls, edges on lines. Flat arrays.
@@ -192,13 +193,15 @@ class Piece {
   double edge_length(VertexIndex a, VertexIndex b) const { return length_between(vertices[a], vertices[b]); }
   double length_between(const Vertex& p, const Vertex& q) const { return adapt::length_between(p, q, isotropic); }
   bool is_longer(const Vertex& p, const Vertex& q, double length) const {
-    return !squared_bounds(p, q, isotropic).surely_within(length) && length_between(p, q) > length;
+    const SquaredBounds bounds = squared_bounds(p, q, isotropic);
+    return !bounds.surely_within(length) && (bounds.surely_beyond(length) || length_between(p, q) > length);
   }
   bool is_longer(VertexIndex a, VertexIndex b, double length) const {
     return is_longer(vertices[a], vertices[b], length);
   }
   bool is_shorter(const Vertex& p, const Vertex& q, double length) const {
-    return !squared_bounds(p, q, isotropic).surely_beyond(length) && length_between(p, q) < length;
+    const SquaredBounds bounds = squared_bounds(p, q, isotropic);
+    return !bounds.surely_beyond(length) && (bounds.surely_within(length) || length_between(p, q) < length);
   }
   /// The score of a tet on these vertices, 0 if it is not positive by exact sign.
   float score_of(const Tet& t) const {
@@ -261,6 +264,7 @@ class Piece {
   /// Something moved a little around it.
   void loosen(VertexIndex v) {
     vertices[v].loose = vertices[v].touched = true;
+    vertices[v].balanced = false;
     vertices[v].calmness = Vertex::kStirred;
   }
 

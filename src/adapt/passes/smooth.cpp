@@ -2,6 +2,8 @@
 // step for each visit, less and less of it as long as that is no gain.
 
 #include "adapt/passes/metric_passes.h"
+#include "adapt/passes/size_star.h"
+#include "adapt/passes/slope.h"
 #include "adapt/passes/worth.h"
 #include "base/geometry/measures.h"
 
@@ -15,9 +17,7 @@ namespace {
 constexpr int kTriesOfMove = 3;
 /// What a volume is worth that is not as wanted, D + 1 / D - 2 of it: edges come nearer to their lengths. It says where
 /// to go only; what is gained is judged by shapes.
-constexpr double kPullOfSize = 0.1, kPullInMetric = 0.3, kSqrt2 = 1.4142135623730951;
-/// What S^(3/2) / D is for a regular element: see Slope.
-constexpr double kScale = 20.784609690826528;
+constexpr double kPullOfSize = 0.1, kPullInMetric = 0.3;
 /// No score falls below this, or below the least one there was.
 constexpr float kGuardOfMove = 0.55f;
 constexpr double kReachOfMove = 0.5;
@@ -88,47 +88,6 @@ class WallCheck {
   bool outer_, knows_before_ = false;
   std::span<const TriangleCorners> before_;
   std::vector<Vec3> seen_;
-};
-
-/// The unit tensor, which costs nothing.
-struct RoundMetric {
-  explicit operator Metric() const { return {}; }
-};
-using adapt::squared, adapt::times;
-OCTAFRONT_KERNEL Vec3 times(const RoundMetric&, Vec3 e) {
-  return e;
-}
-OCTAFRONT_KERNEL double squared(const RoundMetric&, Vec3 e) {
-  return dot(e, e);
-}
-
-/// Slope and curvature of the lack as the vertex moves. With S the sum of squared edges and D the six volumes, both
-/// in the metric, 1 / score is S^(3/2) / D times a constant; D is linear.
-struct Slope {
-  double pull_of_size;
-  Vec3 gradient{};
-  Metric hessian{0, 0, 0, 0, 0, 0};
-
-  /// `M`: Metric, or RoundMetric.
-  template <class M>
-  void add(const M& m, double density, double wanted, Vec3 x, const std::array<Vec3, 3>& face) {
-    const auto& [a, b, c] = face;
-    const double sum = squared(m, x - a) + squared(m, x - b) + squared(m, x - c) + squared(m, b - a) +
-                       squared(m, c - a) + squared(m, c - b);
-    const Vec3 n = -density * double_area_normal(a, b, c), g = 2.0 * times(m, 3.0 * x - (a + b + c));
-    const double d = 1 / dot(n, x - a), root = std::sqrt(sum), f = sum * root * d;
-    // f' = f (3/2 g / S - n / D), f'' = f (9 M / S + 3/4 g g' / S^2 - 3/2 (g n' + n g') / (S D) + 2 n n' / D^2).
-    const Vec3 u = (1 / sum) * g, w = d * n;
-    // Of D + 1 / D, with D = 1 as is wanted: f' = (D - 1 / D) w, f'' = 2 / D w w'.
-    const double size = kSqrt2 * wanted / d, pull = pull_of_size * kScale;
-    gradient += f * (1.5 * u - w) + pull * (size - 1 / size) * w;
-    const double ww = 2 * (f + pull / size);
-    const auto entry = [&](int i, int j) {
-      return f * (0.75 * u[i] * u[j] - 1.5 * (u[i] * w[j] + w[i] * u[j])) + ww * w[i] * w[j];
-    };
-    hessian = hessian + (9 * f / sum) * Metric(m) +
-              Metric{entry(0, 0), entry(0, 1), entry(0, 2), entry(1, 1), entry(1, 2), entry(2, 2)};
-  }
 };
 
 Vec3 step_along(const Slope& s, Vec3 d) {
@@ -228,7 +187,7 @@ class VertexMover {
     Slope slope = slope_at(v, from);
     Vec3 step = newton_step(slope, from);
     // Half of the slope along the step is what a parabola would gain.
-    if (!(-0.5 * dot(slope.gradient, step) > kLeastGainOfMove * kScale * lack)) return false;
+    if (!(-0.5 * dot(slope.gradient, step) > kLeastGainOfMove * Slope::kScale * lack)) return false;
     for (int k = 0; k < kTriesOfMove; ++k, step *= 0.5) {
       Vertex to = from;
       to.at = from.at + step;
@@ -259,11 +218,7 @@ class VertexMover {
         if (s > worst && walls_stay_true(to)) best = to, worst = s;
       }
     if (!(worst > kGainOfMending * had)) return false;
-    scores_.clear();
-    for (Cell& cell : cells_) {
-      cell.corners[cell.at] = &best;
-      scores_.push_back(piece_.score_of_corners(cell.corners));
-    }
+    score_at(best);
     piece_.move(v, best, star_, scores_);
     return true;
   }
@@ -332,13 +287,8 @@ class VertexMover {
   }
 
   bool all_score(const Vertex& to, float least) {
-    scores_.clear();
-    for (Cell& cell : cells_) {
-      cell.corners[cell.at] = &to;
-      scores_.push_back(piece_.score_of_corners(cell.corners));
-      if (!(scores_.back() > least)) return false;
-    }
-    return true;
+    score_at(to);
+    return std::all_of(scores_.begin(), scores_.end(), [&](float s) { return s > least; });
   }
 
   bool walls_turn_little(const Vertex& to) const {
@@ -358,7 +308,7 @@ class VertexMover {
     int at;
   };
   void take_cells(VertexIndex v) {
-    cells_.clear();
+    cells_.clear(), in_size_.clear();
     for (const TetIndex t : star_) {
       const Tet& c = piece_.tet(t);
       Cell cell{};
@@ -367,36 +317,48 @@ class VertexMover {
         if (c[i] == v) cell.at = i;
       }
       cells_.push_back(cell);
+      if (is_in_size())
+        in_size_.add({cell.corners[0]->at, cell.corners[1]->at, cell.corners[2]->at, cell.corners[3]->at}, cell.at);
+    }
+  }
+  bool is_in_size() const { return piece_.isotropic && star_.size() <= SizeStar::kMost; }
+
+  /// The scores of all with the vertex there.
+  void score_at(const Vertex& to) {
+    scores_.clear();
+    if (is_in_size()) {
+      in_size_.evaluate(to.at);
+      for (std::size_t k = 0; k < cells_.size(); ++k) scores_.push_back(in_size_.score(k));
+      return;
+    }
+    for (Cell& cell : cells_) {
+      cell.corners[cell.at] = &to;
+      scores_.push_back(piece_.score_of_corners(cell.corners));
     }
   }
 
   bool is_better(const Vertex& to, float had, double lack) {
-    scores_.clear();
+    score_at(to);
     const double most = lack * (1 - kLeastGainOfMove);
     double sum = 0;
     const float floor = std::min(had, kGuardOfMove);
-    for (Cell& cell : cells_) {
-      cell.corners[cell.at] = &to;
-      const float s = piece_.score_of_corners(cell.corners);
+    for (const float s : scores_) {
       if (!(s > 0) || s < floor) return false;
       sum += lack_of(s);
       if (!(sum < most)) return false;
-      scores_.push_back(s);
     }
     return true;
   }
 
-  Slope slope_at(VertexIndex v, const Vertex& from) const {
-    Slope slope{piece_.isotropic ? kPullOfSize : kPullInMetric};
+  Slope slope_at(VertexIndex v, const Vertex& from) {
+    if (is_in_size()) return in_size_.slope_at(from.at, from.density, kPullOfSize);
+    Slope slope;
     for (std::size_t k = 0; k < cells_.size(); ++k) {
       const Triangle f = piece_.complex.face(piece_.complex.opposite(star_[k], v));
-      const std::array face{piece_.point(f[0]), piece_.point(f[1]), piece_.point(f[2])};
-      if (piece_.isotropic) {
-        slope.add(RoundMetric{}, 1, from.density, from.at, face);
-      } else {
-        const Vertex& d = densest_of(cells_[k].corners);
-        slope.add(d.metric, d.density, 1, from.at, face);
-      }
+      const Vec3 a = piece_.point(f[0]), b = piece_.point(f[1]), c = piece_.point(f[2]);
+      const Vertex& d = densest_of(cells_[k].corners);
+      slope += piece_.isotropic ? slope_of(RoundMetric{}, 1, from.density, kPullOfSize, from.at, a, b, c)
+                                : slope_of(d.metric, d.density, 1, kPullInMetric, from.at, a, b, c);
     }
     return slope;
   }
@@ -471,6 +433,7 @@ class VertexMover {
   const Guide& guide_;
   std::vector<TetIndex> star_;
   std::vector<Cell> cells_;
+  SizeStar in_size_;  ///< the same, in metrics of size
   std::vector<float> scores_;
   std::vector<WallAt> walls_;
   std::vector<VertexIndex> line_ends_;

@@ -51,7 +51,8 @@ class Swapper {
   float value_of(TetIndex t) const { return mends_ ? worth_of(piece_, piece_.tet(t)) : piece_.score[t]; }
   float value_of(const Tet& c) const { return mends_ ? worth_of(piece_, c) : piece_.score_of(c); }
   double longest_beside(VertexIndex a, VertexIndex b) const {
-    return mends_ ? HUGE_VAL : std::max(kLongestOfSwap, piece_.edge_length(a, b));
+    if (mends_) return HUGE_VAL;
+    return piece_.is_longer(a, b, kLongestOfSwap) ? piece_.edge_length(a, b) : kLongestOfSwap;
   }
 
   bool improve(TetIndex t) {
@@ -96,10 +97,21 @@ class Swapper {
   void fill_ring(TetIndex t, VertexIndex a, VertexIndex b) {
     if (ring_.ring.size() < 3) return;
     poly_.assign(ring_.ring.begin(), ring_.ring.end());
+    if (!may_fill(a, b)) return;
     const float lack = triangulate(a, b, longest_beside(a, b), had_ - gain_);
     if (!(lack < had_ - gain_)) return;
     take_old(lack);
     emit(a, b, piece_.region[t]);
+  }
+
+  /// Whether some triangle on the outer edge of the tet that asks, one of which is in each filling, will do by itself.
+  bool may_fill(VertexIndex a, VertexIndex b) {
+    const VertexIndex p = poly_[0], q = poly_[1];
+    most_ = had_ - gain_;
+    return std::any_of(poly_.begin() + 2, poly_.end(), [&](VertexIndex r) {
+      float sum = 0;
+      return add_lack(sum, {a, p, q, r}) && add_lack(sum, {b, p, r, q});
+    });
   }
 
   /// The edge inside a wall goes: on each side of the wall the ring is triangulated for itself, with the new diagonal

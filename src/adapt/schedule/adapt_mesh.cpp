@@ -176,8 +176,9 @@ class Adapter {
   }
 
   /// A cell for each lot of poor elements and some layers around, numbered by their least vertices; other vertices are
-  /// in none. Those inside are awake then, all others asleep. `again`: what mending has changed counts as poor, too,
-  /// for lengths may have changed.
+  /// in none. Poor elements are awake then; all others, the room around them too, sleep until something changes beside
+  /// them: otherwise places would grow by their rims from round to round, over the whole mesh. `again`: what mending has
+  /// changed counts as poor, too, for lengths may have changed.
   Cells poor_places(bool again) {
     const auto is_active = [&](VertexIndex v) { return mesh_.vertices[v].active; };
     std::vector<std::uint8_t> poor(mesh_.tets.size()), near(mesh_.vertices.size(), 0);
@@ -186,6 +187,7 @@ class Adapter {
       poor[t] = is_to_mend(mesh_, c) || (again && std::any_of(c.begin(), c.end(), is_active));
     });
     mark_vertices(mesh_.tets, poor, near);
+    for (VertexIndex v = 0; v < near.size(); ++v) mesh_.vertices[v].active = mesh_.vertices[v].loose = near[v] != 0;
     for (int layer = 0; layer < kLayersOfMending; ++layer) grow_layer(mesh_.tets, poor, near);
     DisjointSets lots(mesh_.vertices.size());
     for (std::size_t t = 0; t < poor.size(); ++t)
@@ -195,7 +197,6 @@ class Adapter {
     places.of.assign(mesh_.vertices.size(), kNoOwner);
     std::vector<std::uint32_t> number(mesh_.vertices.size(), kNoOwner);
     for (VertexIndex v = 0; v < near.size(); ++v) {
-      mesh_.vertices[v].active = mesh_.vertices[v].loose = near[v] != 0;
       if (!near[v]) continue;
       std::uint32_t& place = number[lots.find(v)];
       if (place == kNoOwner) place = places.count++;
@@ -240,12 +241,12 @@ class Adapter {
     return merge(done, tets.left(), lines.left());
   }
 
-  /// The tets that are to be a piece: those where something may be left to do, and some layers around. All others are
-  /// done as they are, and so are lines that the piece does not know.
+  /// The tets that are to be a piece: all of a place that is mended, else those where something may be left to do, and
+  /// some layers around. All others are done as they are, and so are lines that the piece does not know.
   std::vector<TetIndex> take_awake(std::span<const TetIndex> tets, std::span<const Parts::Line> lines,
                                    std::vector<VertexIndex>& here, Done& done) const {
     const auto is_awake = [&](VertexIndex v) {
-      return here[v] != kNone || mesh_.vertices[v].active || mesh_.vertices[v].loose;
+      return mends_ || here[v] != kNone || mesh_.vertices[v].active || mesh_.vertices[v].loose;
     };
     std::vector<std::uint8_t> taken(tets.size(), 0);
     for (int layer = 0; layer < kLayersAwake; ++layer) {

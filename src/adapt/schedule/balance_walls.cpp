@@ -24,6 +24,19 @@ bool may_balance(const Vertex& v) {
   return v.kind == Kind::kSurface && !v.stays();
 }
 
+/// Others are where they belong since walls were balanced before.
+bool waits(const Vertex& v) {
+  return may_balance(v) && !v.balanced;
+}
+
+/// What lies around vertices that moved is to be balanced once more.
+void wake_around(Parts& parts, const std::vector<std::uint8_t>& moves) {
+  for (Vertex& v : parts.vertices) v.balanced = true;
+  for (const Tet& c : parts.tets)
+    if (std::any_of(c.begin(), c.end(), [&](VertexIndex v) { return moves[v] != 0; }))
+      for (const VertexIndex v : c) parts.vertices[v].balanced = false;
+}
+
 /// Takes back what makes elements worse, until none is.
 void take_back(const Parts& parts, std::vector<Vertex>& moved, std::vector<std::uint8_t>& moves) {
   const float good = parts.isotropic ? kGoodOfBalance : kGoodOfBalanceInMetric;
@@ -50,11 +63,13 @@ std::size_t balance_once(Parts& parts, const Guide& guide, double feature_angle)
   walls.surface = now.surface, walls.outer = now.outer;
   turn_alike(walls);
   walls.lines = detect_features(walls.surface, walls.edges, feature_angle);
-  std::vector<std::uint8_t> may_move;
+  std::vector<std::uint8_t> may_move, waiting;
   std::vector<std::uint32_t> near;
-  for (const VertexIndex v : now.vertex)
-    may_move.push_back(may_balance(parts.vertices[v])), near.push_back(parts.vertices[v].near);
-  const std::vector<Vec3> steps = steps_to_balance(walls, may_move, near, guide.ground, guide.tolerances);
+  for (const VertexIndex v : now.vertex) {
+    const Vertex& at = parts.vertices[v];
+    may_move.push_back(may_balance(at)), waiting.push_back(waits(at)), near.push_back(at.near);
+  }
+  const std::vector<Vec3> steps = steps_to_balance(walls, may_move, waiting, near, guide.ground, guide.tolerances);
   std::vector<Vertex> moved = parts.vertices;
   std::vector<std::uint8_t> moves(moved.size(), 0);
   for (std::size_t p = 0; p < steps.size(); ++p) {
@@ -67,6 +82,7 @@ std::size_t balance_once(Parts& parts, const Guide& guide, double feature_angle)
   }
   take_back(parts, moved, moves);
   parts.vertices = std::move(moved);
+  wake_around(parts, moves);
   return static_cast<std::size_t>(std::count(moves.begin(), moves.end(), 1));
 }
 
@@ -74,9 +90,11 @@ std::size_t balance_once(Parts& parts, const Guide& guide, double feature_angle)
 
 std::size_t balance_walls(Parts& parts, const Guide& guide, double feature_angle) {
   if (guide.ground.given() || guide.tolerance <= 0) return 0;
-  if (std::none_of(parts.vertices.begin(), parts.vertices.end(), may_balance)) return 0;
+  const auto any_waits = [&] { return std::any_of(parts.vertices.begin(), parts.vertices.end(), waits); };
   std::size_t moved = 0;
-  for (int k = 0; k < kMostBalancings; ++k) moved = std::max(moved, balance_once(parts, guide, feature_angle));
+  for (int k = 0; k < kMostBalancings && any_waits(); ++k)
+    moved = std::max(moved, balance_once(parts, guide, feature_angle));
+  for (Vertex& v : parts.vertices) v.balanced = true;
   return moved;
 }
 

@@ -1,11 +1,14 @@
 #include "adapt/schedule/nearness.h"
 
+#include "base/core/flat_map.h"
 #include "base/core/parallel.h"
 #include "base/core/renumber.h"
 #include "base/geometry/hausdorff.h"
 #include "base/geometry/measures.h"
 
 #include <algorithm>
+#include <array>
+#include <bit>
 #include <cmath>
 #include <map>
 #include <utility>
@@ -35,12 +38,49 @@ void visit_places(const TriangleCorners& t, const Visit& visit) {
     }
 }
 
+/// Whether all of a triangle is within a distance of one triangle of the tree: how far it is away is convex.
+bool is_near_one(const TriangleTree& tree, const TriangleCorners& t, double within) {
+  const std::uint32_t nearest = tree.nearest(centroid(t[0], t[1], t[2])).triangle;
+  if (nearest == kNone) return false;
+  const auto& [a, b, c] = tree.corners(nearest);
+  return std::all_of(t.begin(), t.end(), [&](Vec3 p) {
+    return squared_distance(p, closest_point_on_triangle(p, a, b, c)) < within * within;
+  });
+}
+
 void add_triangles(const std::vector<TriangleCorners>& list, SurfaceMesh& surface) {
   for (const TriangleCorners& t : list) {
     const auto first = static_cast<VertexIndex>(surface.points.size());
     surface.points.insert(surface.points.end(), t.begin(), t.end());
     surface.triangles.push_back({first, first + 1, first + 2});
   }
+}
+
+/// Points by their bits.
+struct PointKeys {
+  using Key = std::array<std::uint64_t, 3>;
+  static constexpr Key kEmpty{~std::uint64_t{0}, ~std::uint64_t{0}, ~std::uint64_t{0}};
+  static constexpr std::uint64_t hash(const Key& key) {
+    std::uint64_t sum = 0;
+    for (const std::uint64_t k : key) sum = (sum ^ k) * 0x9e3779b97f4a7c15u, sum ^= sum >> 32;
+    return sum * 0x9e3779b97f4a7c15u;
+  }
+};
+
+/// Corners at one place become one point: how far it is away is asked once.
+void join_points(SurfaceMesh& surface) {
+  FlatMap<PointKeys::Key, VertexIndex, PointKeys> number(surface.points.size() / 4);
+  std::vector<Vec3> points;
+  for (Triangle& t : surface.triangles)
+    for (VertexIndex& v : t) {
+      const Vec3 p = surface.points[v];
+      const PointKeys::Key key{std::bit_cast<std::uint64_t>(p.x), std::bit_cast<std::uint64_t>(p.y),
+                               std::bit_cast<std::uint64_t>(p.z)};
+      const auto next = static_cast<VertexIndex>(points.size());
+      v = number.find_or_add(key, next);
+      if (v == next) points.push_back(p);
+    }
+  surface.points = std::move(points);
 }
 
 TriangleCorners corners_on(const SurfaceMesh& surface, const Triangle& t) {
@@ -85,6 +125,7 @@ SmoothWalls::SmoothWalls(const Ground& ground, const WallBounds& bounds) : bound
     add_triangles(made[k], all);
   }
   if (ground.given()) add_given(ground, all);
+  for (Group& group : groups_) join_points(group.smooth);
   tree_ = TriangleTree(all);
   std::vector<SurfaceMesh> old_of_groups = divided_in_groups(old);
   for (std::size_t g = 0; g < groups_.size(); ++g) {
@@ -198,7 +239,9 @@ std::vector<SmoothWalls::Stray> SmoothWalls::strays(const SurfaceMesh& surface, 
   for (const Group& group : groups_) {
     std::vector<std::uint32_t> nearest(group.smooth.triangles.size(), kNone);
     parallel_for(nearest.size(), [&](std::size_t t) {
-      visit_places(corners_on(group.smooth, group.smooth.triangles[t]), [&](Vec3 p) {
+      const TriangleCorners corners = corners_on(group.smooth, group.smooth.triangles[t]);
+      if (is_near_one(tree, corners, share * group.bound)) return;
+      visit_places(corners, [&](Vec3 p) {
         if (nearest[t] == kNone && !tree.is_within(p, share * group.bound)) nearest[t] = tree.nearest(p).triangle;
       });
     });
