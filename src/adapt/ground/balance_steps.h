@@ -15,7 +15,8 @@ namespace octafront::adapt {
 /// what the walls stand for themselves (their own smooth surface, flat where there is none) on one side as on the
 /// other, weighted by the point's share of places; zero where that is next to nothing. Points that may not move leave
 /// their shares to the others of their triangles; those that may, but do not wait, are where they belong and stay.
-/// `near`: per point a triangle of the ground that may be near, or kNone. `tolerance`: per part of the ground's walls, which have the same numbers here; > 0.
+/// `near`: per point a triangle of the ground that may be near, or kNone. `tolerance`: per part of the ground's walls,
+/// which have the same numbers here; > 0.
 std::vector<Vec3> steps_to_balance(const Walls& walls, std::span<const std::uint8_t> may_move,
                                    std::span<const std::uint8_t> waits, std::span<const std::uint32_t> near,
                                    const Ground& ground, std::span<const double> tolerance);

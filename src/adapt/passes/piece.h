@@ -29,14 +29,14 @@ enum class Kind : std::uint8_t { kInner, kSurface, kCurve, kFixed };
 struct alignas(64) Vertex {
   Vec3 at;
   Kind kind = Kind::kInner;
-  bool rim = false;     ///< of a piece: some of its tets are not there, so it stays
-  bool active = true;   ///< something may be left to connect, split or collapse around it
-  bool loose = true;    ///< it may have to move
-  bool touched = true;  ///< of a piece: it was active when that was taken, or something around it changed since
-  bool exact = true;    ///< the metric is that of the place, not one on the way to it
-  bool frozen = false;  ///< asked to stay as it is, with all that is between vertices that are
-  bool held = false;    ///< asked to stay as it is, alone
-  bool off = false;     ///< on a wall, beside the surface that was given: it is to go there
+  bool rim = false;       ///< of a piece: some of its tets are not there, so it stays
+  bool active = true;     ///< something may be left to connect, split or collapse around it
+  bool loose = true;      ///< it may have to move
+  bool touched = true;    ///< of a piece: it was active when that was taken, or something around it changed since
+  bool exact = true;      ///< the metric is that of the place, not one on the way to it
+  bool frozen = false;    ///< asked to stay as it is, with all that is between vertices that are
+  bool held = false;      ///< asked to stay as it is, alone
+  bool off = false;       ///< on a wall, beside the surface that was given: it is to go there
   bool balanced = false;  ///< nothing around it changed since walls were balanced
   /// For what mends: kStirred, something around it changed; kSettling, just before the cycle that is under way; kCalm,
   /// all that could be tried around it has been, in vain.

@@ -3,9 +3,9 @@
 // The star of a vertex in metrics of size, in which the shape of an element alone counts: what its elements are worth
 // with the vertex elsewhere, and which way it is better, by vector units. The same bits as one by one.
 
-#include "adapt/passes/slope.h"
-
 #include <octafront/vec.h>
+
+#include "adapt/passes/slope.h"
 
 #include <array>
 

@@ -36,15 +36,16 @@ struct Slope {
   void operator+=(const Slope& o) { gradient += o.gradient, hessian = hessian + o.hessian; }
 };
 
-/// Of the element with the corners x, a, b, c. With S the sum of squared edges and D the six volumes, both in the metric
-/// `m` of this density, 1 / score is S^(3/2) / D times a constant; D is linear. A volume that is not as `wanted`, a
-/// density, is worth `pull` of D + 1 / D - 2. `M`: Metric, or RoundMetric.
+/// Of the element with the corners x, a, b, c. With S the sum of squared edges and D the six volumes, both in the
+/// metric `m` of this density, 1 / score is S^(3/2) / D times a constant; D is linear. A volume that is not as
+/// `wanted`, a density, is worth `pull` of D + 1 / D - 2. `M`: Metric, or RoundMetric.
 template <class M>
 OCTAFRONT_KERNEL Slope slope_of(const M& m, double density, double wanted, double pull, Vec3 x, Vec3 a, Vec3 b,
                                 Vec3 c) {
   constexpr double kSqrt2 = 1.4142135623730951;
   const Vec3 xa = x - a, xb = x - b, xc = x - c, ba = b - a, ca = c - a, cb = c - b;
-  const double sum = squared(m, xa) + squared(m, xb) + squared(m, xc) + squared(m, ba) + squared(m, ca) + squared(m, cb);
+  const double sum =
+      squared(m, xa) + squared(m, xb) + squared(m, xc) + squared(m, ba) + squared(m, ca) + squared(m, cb);
   const Vec3 n = -density * cross(ba, ca), g = 2.0 * times(m, 3.0 * x - (a + b + c));
   const double d = 1 / dot(n, xa), root = std::sqrt(sum), f = sum * root * d;
   // f' = f (3/2 g / S - n / D), f'' = f (9 M / S + 3/4 g g' / S^2 - 3/2 (g n' + n g') / (S D) + 2 n n' / D^2).

@@ -177,8 +177,8 @@ class Adapter {
 
   /// A cell for each lot of poor elements and some layers around, numbered by their least vertices; other vertices are
   /// in none. Poor elements are awake then; all others, the room around them too, sleep until something changes beside
-  /// them: otherwise places would grow by their rims from round to round, over the whole mesh. `again`: what mending has
-  /// changed counts as poor, too, for lengths may have changed.
+  /// them: otherwise places would grow by their rims from round to round, over the whole mesh. `again`: what mending
+  /// has changed counts as poor, too, for lengths may have changed.
   Cells poor_places(bool again) {
     const auto is_active = [&](VertexIndex v) { return mesh_.vertices[v].active; };
     std::vector<std::uint8_t> poor(mesh_.tets.size()), near(mesh_.vertices.size(), 0);
@@ -468,7 +468,7 @@ void grade_from(Parts& parts, std::vector<VertexIndex> queue) {
 void mend_walls(Parts& parts, const Ground& ground, const AdaptRules& rules, Adapter& adapter, Adapted& out,
                 const WallBounds& bounds, const Stage& stage) {
   if (rules.tolerance <= 0 || bounds.tolerance.empty()) return;
-  const SmoothWalls smooth(ground, bounds);
+  SmoothWalls smooth(ground, bounds);
   // Walls that stay are frozen, and those are not looked at.
   out.deviations = rules.keep_walls ? smooth.of_old() : smooth.of(parts);
   if (rules.keep_walls || excess_of(out.deviations) <= 1) return;

@@ -134,7 +134,7 @@ class SheetAdapter {
     if (rules.tolerance <= 0) return;
     const auto& parts = guide.guide.ground.walls().surface.patch;
     const std::size_t count = parts.empty() ? 1 : *std::max_element(parts.begin(), parts.end()) + 1;
-    const SmoothWalls smooth(
+    SmoothWalls smooth(
         guide.guide.ground,
         {std::vector<double>(count, rules.tolerance), std::vector<std::uint8_t>(count, rules.strict), {}, {}});
     out.deviation = worst_of(smooth.of(walls_of(sheet)));

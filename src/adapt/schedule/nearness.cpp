@@ -132,9 +132,7 @@ SmoothWalls::SmoothWalls(const Ground& ground, const WallBounds& bounds) : bound
     groups_[g].old = std::move(old_of_groups[g]);
     const auto p = static_cast<std::size_t>(std::find(group_.begin(), group_.end(), g) - group_.begin());
     groups_[g].bound = bounds_.tolerance[p];
-    if (bounds_.strict[p]) continue;
-    const Deviation had = distance_of(groups_[g], groups_[g].old, TriangleTree(groups_[g].old), kResolution);
-    groups_[g].bound = std::max(groups_[g].bound, had.upper);
+    groups_[g].excused = bounds_.strict[p] != 0;
   }
 }
 
@@ -188,19 +186,32 @@ std::vector<SurfaceMesh> SmoothWalls::divided_in_groups(const SurfaceMesh& walls
   return parts;
 }
 
-std::vector<Deviation> SmoothWalls::of_old() const {
+Deviation SmoothWalls::of_old(const Group& group) const {
+  return distance_of(group, group.old, TriangleTree(group.old), kResolution);
+}
+
+void SmoothWalls::excuse(Group& group) {
+  if (std::exchange(group.excused, true)) return;
+  group.bound = std::max(group.bound, of_old(group).upper);
+}
+
+std::vector<Deviation> SmoothWalls::of_old() {
   std::vector<Deviation> all;
-  for (const Group& group : groups_) all.push_back(distance_of(group, group.old, TriangleTree(group.old), kResolution));
+  for (Group& group : groups_) {
+    excuse(group);
+    all.push_back(of_old(group));
+  }
   return all;
 }
 
-std::vector<Deviation> SmoothWalls::of(const SurfaceMesh& walls) const {
+std::vector<Deviation> SmoothWalls::of(const SurfaceMesh& walls) {
   const TriangleTree tree(walls);
   const std::vector<SurfaceMesh> parts = divided_in_groups(walls);
   std::vector<Deviation> all;
   for (std::size_t g = 0; g < groups_.size(); ++g) {
-    const double bound = groups_[g].bound;
     Deviation known = distance_of(groups_[g], parts[g], tree, kResolution);
+    if (known.upper > groups_[g].bound) excuse(groups_[g]);
+    const double bound = known.bound = groups_[g].bound;
     if (known.lower <= bound && bound < known.upper) known = distance_of(groups_[g], parts[g], tree, kFineResolution);
     all.push_back(known);
   }

@@ -41,19 +41,19 @@ struct WallBounds {
 };
 
 /// The surface that the walls that may change stand for, smooth or given, as triangles that are far nearer to it than
-/// the tolerance. Walls of one tolerance are a group, which is measured by itself. Const and safe on any number of
-/// threads.
+/// the tolerance. Walls of one tolerance are a group, which is measured by itself.
 class SmoothWalls {
  public:
   SmoothWalls(const Ground& ground, const WallBounds& bounds);
 
   /// Of the walls of a mesh made of those that came, per group, more exactly where it is not clear whether they keep
-  /// the bound. They include what the triangles here differ from the smooth surface.
-  std::vector<Deviation> of(const Parts& mesh) const { return of(walls_of(mesh).surface); }
+  /// the bound. They include what the triangles here differ from the smooth surface. Where the bound is not kept, and
+  /// not strict, it becomes what the walls kept that came.
+  std::vector<Deviation> of(const Parts& mesh) { return of(walls_of(mesh).surface); }
   /// Of the walls that came.
-  std::vector<Deviation> of_old() const;
+  std::vector<Deviation> of_old();
   /// `walls.patch`: the parts.
-  std::vector<Deviation> of(const SurfaceMesh& walls) const;
+  std::vector<Deviation> of(const SurfaceMesh& walls);
 
   /// A triangle with places farther from here than a share of the bound of its group, or that is nearest to a place
   /// here that is farther than it from any.
@@ -71,6 +71,7 @@ class SmoothWalls {
   struct Group {
     double tolerance = 0;  ///< by which the smooth surface is divided, and distances known
     double bound = 0;
+    bool excused = false;  ///< walls that came count already, or are no excuse
     SurfaceMesh old, smooth;
   };
   /// Those that may change.
@@ -78,6 +79,8 @@ class SmoothWalls {
   bool stays(const Triangle& corners, std::uint32_t part) const;
   void make_groups();
   void add_given(const Ground& ground, SurfaceMesh& all);
+  Deviation of_old(const Group& group) const;
+  void excuse(Group& group);
   Deviation distance_of(const Group& group, const SurfaceMesh& walls, const TriangleTree& tree,
                         double resolution) const;
   /// The triangles of each group; those alone have points.
