@@ -2,7 +2,6 @@
 
 #include <octafront/error.h>
 
-#include "formats/read/read_tetgen.h"
 #include "formats/read/readers.h"
 
 #include <array>

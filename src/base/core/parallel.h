@@ -120,6 +120,16 @@ All parallel_collect(std::size_t n, std::size_t range, const Collect& collect) {
   return joined<All>(parts);
 }
 
+/// The numbers below n that the test is true for, ascending.
+template <class Test>
+std::vector<std::uint32_t> parallel_select(std::size_t n, const Test& test, std::size_t range = 16384) {
+  return parallel_collect<std::uint32_t>(n, range,
+                                         [&](std::size_t begin, std::size_t end, std::vector<std::uint32_t>& found) {
+                                           for (auto i = static_cast<std::uint32_t>(begin); i < end; ++i)
+                                             if (test(i)) found.push_back(i);
+                                         });
+}
+
 /// Calls number(i, k) for the k-th i < n for which test(i) is true, and returns how many there are. test(i) is called
 /// twice.
 template <class Test, class Number>

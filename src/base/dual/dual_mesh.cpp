@@ -94,11 +94,8 @@ void place_points(PolyMesh& mesh, dual::DualPoints& points, const std::vector<Ve
   const std::vector<std::uint32_t> used = number_points(mesh, points);
   mesh.points.resize(used.size());
   parallel_for(used.size(), [&](std::size_t i) { mesh.points[i] = points.place(used[i]); });
-  const auto leaning = parallel_collect<std::uint32_t>(
-      mesh.inner_faces(), kVerticesAtOnce, [&](std::size_t begin, std::size_t end, std::vector<std::uint32_t>& out) {
-        for (std::size_t f = begin; f < end; ++f)
-          if (leans(mesh, f, vertices)) out.push_back(static_cast<std::uint32_t>(f));
-      });
+  const auto leaning = parallel_select(
+      mesh.inner_faces(), [&](std::uint32_t f) { return leans(mesh, f, vertices); }, kVerticesAtOnce);
   for (const std::uint32_t f : leaning)
     for (const VertexIndex p : mesh.face(f)) {
       if (!points.is_movable(used[p])) continue;

@@ -50,13 +50,7 @@ class FaultFinder {
 
 PolyFaults faults_of(const PolyMesh& mesh) {
   const FaultFinder finder(mesh);
-  const auto those = [&](const auto& test) {
-    return parallel_collect<std::uint32_t>(mesh.cells(), kCellsAtOnce,
-                                           [&](std::size_t begin, std::size_t end, std::vector<std::uint32_t>& out) {
-                                             for (auto c = static_cast<std::uint32_t>(begin); c < end; ++c)
-                                               if (test(c)) out.push_back(c);
-                                           });
-  };
+  const auto those = [&](const auto& test) { return parallel_select(mesh.cells(), test, kCellsAtOnce); };
   PolyFaults faults;
   const std::vector<std::uint32_t> unsound = those([&](std::uint32_t c) { return finder.is_unsound(c); });
   const std::vector<std::uint32_t> turned = those([&](std::uint32_t c) { return finder.is_turned(c); });

@@ -50,4 +50,13 @@ void divide_by_sides(SurfaceMesh& complex) {
   complex.patch_labels = std::move(labels);
 }
 
+std::vector<Sides> sides_of_patches(const SurfaceMesh& complex) {
+  std::vector<Sides> sides;
+  for (std::size_t t = 0; t < complex.sides.size(); ++t) {
+    if (complex.patch[t] >= sides.size()) sides.resize(complex.patch[t] + 1);
+    sides[complex.patch[t]] = complex.sides[t];
+  }
+  return sides;
+}
+
 }  // namespace octafront

@@ -3,7 +3,7 @@
 #include "base/mesh/curve_names.h"
 #include "cad/shapes/names.h"
 #include "cad/shapes/part_contacts.h"
-#include "doors/intake/cad_intake.h"
+#include "doors/intake/intake.h"
 
 #include <algorithm>
 #include <map>

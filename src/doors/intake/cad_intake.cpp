@@ -1,7 +1,7 @@
-#include "doors/intake/cad_intake.h"
-
 #include <octafront/error.h>
 #include <octafront/units.h>
+
+#include "doors/intake/intake.h"
 
 #include <cstdint>
 

@@ -1,17 +1,14 @@
-#include "doors/intake/coarser_voxels.h"
-
 #include <octafront/image_surface.h>
 
 #include "base/core/elementary.h"
 #include "base/geometry/measures.h"
-#include "images/labels/thinness.h"
+#include "doors/intake/intake.h"
+#include "images/labels/label_steps.h"
 
 #include <algorithm>
 #include <cmath>
 #include <cstddef>
 #include <cstdint>
-#include <string>
-#include <vector>
 
 #include <fmt/format.h>
 

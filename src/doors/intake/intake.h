@@ -1,10 +1,9 @@
 #pragma once
 
-// doors/intake: the way in. Takes files, bodies, arrays and images; asks cells, mend and nets, in the order that all
-// doors share; leaves a Domain: what generate() meshes, and what was found and done (octafront/domain.h).
-
 #include <octafront/domain.h>
+#include <octafront/image.h>
 
+#include "cad/reader/cad_reader.h"
 #include "soup/cells/misfit.h"
 
 #include <optional>
@@ -12,6 +11,9 @@
 #include <vector>
 
 namespace octafront::intake {
+
+// doors/intake: the way in. Takes files, bodies, arrays and images; asks cells, mend and nets, in the order that all
+// doors share; leaves a Domain: what generate() meshes, and what was found and done (octafront/domain.h).
 
 /// Enters a note into the domain, and tells it.
 void note(Domain& domain, const IntakeOptions& options, std::string stage, std::string text);
@@ -68,5 +70,23 @@ struct ContactsAsked {
 std::optional<double> area_in(const std::string& text);
 /// Throws OptionError for what is neither; InputError for a file that says something else.
 ContactsAsked contacts_asked(const IntakeOptions& options);
+
+// How a CAD file is read, by the options of the way in.
+
+/// Throws OptionError.
+void check_cad_intake(const CadIntake& asked);
+
+cad::ReaderOptions reader_options(const IntakeOptions& options);
+
+/// How many millimetres the unit has that is asked for.
+double millimetres_of(const CadIntake& asked);
+/// The same in the unit that a model's lengths are in.
+double unit_of(const cad::CadModel& model, const CadIntake& asked);
+
+// Grey images whose details no mesh of automatic size can have.
+
+/// The image in coarser voxels, if ImageIntake::most_elements asks for it; its last note says what was given up.
+std::optional<Image> coarsened_for_budget(const Image& image, const ImageIntake& asked, const ImageRegions& regions,
+                                          const RunContext& context);
 
 }  // namespace octafront::intake

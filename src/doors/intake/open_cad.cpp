@@ -11,7 +11,6 @@
 #include "cad/shapes/names.h"
 #include "cad/shapes/part_contacts.h"
 #include "cad/shapes/shapes.h"
-#include "doors/intake/cad_intake.h"
 #include "doors/intake/intake.h"
 #include "sizing/field/affordable.h"
 

@@ -6,7 +6,6 @@
 #include "base/core/wording.h"
 #include "base/geometry/measures.h"
 #include "doors/intake/cell.h"
-#include "doors/intake/coarser_voxels.h"
 #include "doors/intake/intake.h"
 
 #include <algorithm>

@@ -5,7 +5,7 @@
 #include <octafront/image_samples.h>
 #include <octafront/image_surface.h>
 
-#include "images/labels/thinness.h"
+#include "images/labels/label_steps.h"
 #include "images/nets/function_surface.h"
 
 #include <filesystem>

@@ -21,6 +21,13 @@ class Hdf5Writer {
   /// Fills `to` with the values [first, first + count).
   template <class T>
   using Fill = std::function<void(std::uint64_t first, std::span<T> to)>;
+  /// Value by value; value_at must live as long.
+  template <class T, class ValueAt>
+  static Fill<T> each(const ValueAt& value_at) {
+    return [&value_at](std::uint64_t first, std::span<T> to) {
+      for (std::uint64_t k = 0; k < to.size(); ++k) to[k] = value_at(first + k);
+    };
+  }
 
   /// `target`: as the user knows it, for messages. `ordered`: groups remember the order in which their members were
   /// made.
@@ -39,6 +46,10 @@ class Hdf5Writer {
   template <class T>
   void dataset(const std::string& path, const std::vector<std::uint64_t>& shape, const Fill<T>& fill) {
     rows(path, shape, {0, shape[0]}, fill);
+  }
+  template <class T, class ValueAt>
+  void values(const std::string& path, const std::vector<std::uint64_t>& shape, const ValueAt& value_at) {
+    dataset(path, shape, each<T>(value_at));
   }
   /// A stretch of rows of a dataset of this shape, which is made at the first one: whoever has only a piece at a time
   /// need not know the others. `first` counts from the beginning of the stretch.

@@ -1,9 +1,5 @@
 #pragma once
 
-// formats/containers: what many formats are made of: bytes of a file and complaints about places in them (input.h),
-// words and numbers of a text (scanner.h), XML, HDF5, netCDF; files written beside and renamed into place
-// (atomic_file.h).
-
 #include <octafront/run_context.h>
 
 #include <algorithm>
@@ -13,8 +9,13 @@
 #include <span>
 #include <string>
 #include <string_view>
+#include <vector>
 
 namespace octafront::io {
+
+// formats/containers: what many formats are made of: bytes of a file and complaints about places in them (input.h),
+// words and numbers of a text (scanner.h), XML, HDF5, netCDF; files written beside and renamed into place
+// (atomic_file.h).
 
 /// The bytes of a file and its name, and how to complain about a place in it. Does not own the bytes.
 struct Input {
@@ -78,5 +79,18 @@ class LoadedFile {
 std::string in_quotes(std::string_view text);
 /// The names, each in quotes, with commas between them.
 std::string names_in_quotes(std::span<const std::string> names);
+
+/// A text in ranges of whole lines, in their order, each for a thread of its own. Lines that end with CR alone are not
+/// told apart: they are all in one range.
+///
+/// Readers go through ranges as far as a text is as nearly all are. Where it is not, or anything is wrong with it, they
+/// read it once more from its begin to its end: who reads all knows the line, and says what has always been said.
+std::vector<std::string_view> line_ranges(std::string_view text);
+
+/// Whether it is worth it: several threads, and a text of some size.
+bool reads_in_ranges(std::string_view text);
+
+/// A range of the lines of an input as one by itself: it shows no progress and never ends the run.
+Input input_of_range(const Input& input, std::string_view range);
 
 }  // namespace octafront::io

@@ -1,8 +1,6 @@
-#include "formats/containers/line_ranges.h"
-
 #include "base/core/parallel.h"
+#include "formats/containers/input.h"
 
-#include <algorithm>
 #include <cstring>
 
 namespace octafront::io {

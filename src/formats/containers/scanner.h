@@ -1,5 +1,7 @@
 #pragma once
 
+#include <octafront/vec.h>
+
 #include "base/core/ascii.h"
 #include "base/core/doubles.h"
 #include "formats/containers/input.h"
@@ -54,6 +56,11 @@ class Scanner {
   void skip_line() {
     while (at_ != end_ && !is_line_end(*at_)) ++at_;
   }
+  /// Behind it: what binary values begin with is passed over by neither.
+  void skip_line_end() {
+    if (at_ != end_ && *at_ == '\r') ++at_;
+    if (at_ != end_ && *at_ == '\n') ++at_;
+  }
 
   /// A finite number; `what` completes the sentence "expected ...".
   double number(std::string_view what) {
@@ -65,6 +72,11 @@ class Scanner {
       return value;
     }
     return unusual_number(what);
+  }
+  /// Three of them.
+  Vec3 point(std::string_view what = "a coordinate") {
+    const double x = number(what), y = number(what), z = number(what);
+    return {x, y, z};
   }
   std::int64_t integer(std::string_view what) {
     skip_blanks();

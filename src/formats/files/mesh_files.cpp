@@ -11,7 +11,7 @@
 #include "formats/parts/mixed_cells.h"
 #include "formats/parts/pieces.h"
 #include "formats/parts/raw_mesh.h"
-#include "formats/write/foam_case.h"
+#include "formats/write/foam_files.h"
 
 #include <algorithm>
 #include <optional>

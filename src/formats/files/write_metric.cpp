@@ -3,8 +3,7 @@
 #include <octafront/error.h>
 #include <octafront/io.h>
 
-#include "formats/containers/text_writer.h"
-#include "formats/containers/vtu_arrays.h"
+#include "formats/write/vtu_head.h"
 
 #include <fmt/core.h>
 
@@ -20,11 +19,9 @@ void write_metric_grid(io::AtomicFile& file, const MetricMesh& mesh) {
   const std::uint64_t corners = has_tets ? 4 : 3;
   io::TextWriter out(file);
   io::VtuArrays arrays(file);
-  out << "<?xml version=\"1.0\"?>\n"
-         "<VTKFile type=\"UnstructuredGrid\" version=\"1.0\" byte_order=\"LittleEndian\" header_type=\"UInt64\" "
-         "compressor=\"vtkZLibDataCompressor\">\n"
-         "  <UnstructuredGrid>\n    <Piece NumberOfPoints=\""
-      << points << "\" NumberOfCells=\"" << cells << "\">\n      <Points>\n";
+  io::begin_grid(out);
+  io::begin_piece(out, points, cells);
+  out << "      <Points>\n";
   arrays.declare<double>("Float64", "Points", 3, 3 * points,
                          [&](std::uint64_t i) { return mesh.points[i / 3][static_cast<int>(i % 3)]; });
   out << "      </Points>\n      <Cells>\n";
@@ -40,9 +37,8 @@ void write_metric_grid(io::AtomicFile& file, const MetricMesh& mesh) {
     const Metric& m = mesh.metrics[i / 9];
     return std::array{m.xx, m.xy, m.xz, m.xy, m.yy, m.yz, m.xz, m.yz, m.zz}[i % 9];
   });
-  out << "      </PointData>\n    </Piece>\n  </UnstructuredGrid>\n";
-  arrays.write_data();
-  out << "</VTKFile>\n";
+  out << "      </PointData>\n";
+  io::end_vtu(out, arrays);
 }
 
 void write_solution(io::AtomicFile& file, const MetricMesh& mesh) {

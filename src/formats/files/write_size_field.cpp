@@ -3,8 +3,7 @@
 #include <octafront/error.h>
 #include <octafront/io.h>
 
-#include "formats/containers/text_writer.h"
-#include "formats/containers/vtu_arrays.h"
+#include "formats/write/vtu_head.h"
 #include "sizing/field/octree_corners.h"
 #include "sizing/field/octree_field.h"
 
@@ -32,11 +31,9 @@ void write_grid(io::AtomicFile& file, const OctreeField& field) {
   const std::uint64_t points = corners.size(), cells = field.tree.size();
   io::TextWriter out(file);
   io::VtuArrays arrays(file);
-  out << "<?xml version=\"1.0\"?>\n"
-         "<VTKFile type=\"UnstructuredGrid\" version=\"1.0\" byte_order=\"LittleEndian\" header_type=\"UInt64\" "
-         "compressor=\"vtkZLibDataCompressor\">\n"
-         "  <UnstructuredGrid>\n    <Piece NumberOfPoints=\""
-      << points << "\" NumberOfCells=\"" << cells << "\">\n      <Points>\n";
+  io::begin_grid(out);
+  io::begin_piece(out, points, cells);
+  out << "      <Points>\n";
   arrays.declare<double>("Float64", "Points", 3, 3 * points, [&](std::uint64_t i) {
     return field.root.position(corners.position[i / 3])[static_cast<int>(i % 3)];
   });
@@ -52,9 +49,8 @@ void write_grid(io::AtomicFile& file, const OctreeField& field) {
   out << "      </PointData>\n      <CellData>\n";
   arrays.declare<std::int32_t>("Int32", "level", 1, cells,
                                [&](std::uint64_t i) { return static_cast<std::int32_t>(field.tree.leaf(i).level()); });
-  out << "      </CellData>\n    </Piece>\n  </UnstructuredGrid>\n";
-  arrays.write_data();
-  out << "</VTKFile>\n";
+  out << "      </CellData>\n";
+  io::end_vtu(out, arrays);
 }
 
 }  // namespace

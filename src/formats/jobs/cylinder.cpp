@@ -1,12 +1,11 @@
-#include "formats/jobs/cylinder.h"
 
 #include "base/core/elementary.h"
 #include "base/geometry/frame.h"
 #include "base/geometry/symmetric_matrix.h"
+#include "formats/jobs/job_plan.h"
 
 #include <algorithm>
 #include <cmath>
-#include <vector>
 
 namespace octafront::io {
 namespace {

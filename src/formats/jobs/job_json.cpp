@@ -140,36 +140,24 @@ JobCoupling coupling_of(const JobItem& item, const std::string& name) {
 }
 
 void take_job(const JobItem& item, SolverJob& job) {
-  item.take(
-      {{"materials", [&](const JobItem& i) { take_materials(i, job); }},
-       {"fix",
-        [&](const JobItem& i) {
-          i.for_each([&](const std::string& place, const JobItem& v) { job.fixes.push_back(fix_of(v, place)); });
-        }},
-       {"load",
-        [&](const JobItem& i) {
-          i.for_each([&](const std::string& place, const JobItem& v) { job.loads.push_back({place, v.vector()}); });
-        }},
-       {"pressure",
-        [&](const JobItem& i) {
-          i.for_each([&](const std::string& place, const JobItem& v) { job.pressures.push_back({place, v.number()}); });
-        }},
-       {"friction",
-        [&](const JobItem& i) {
-          i.for_each([&](const std::string& place, const JobItem& v) { job.contacts.push_back(contact_of(v, place)); });
-        }},
-       {"pretension",
-        [&](const JobItem& i) {
-          i.for_each([&](const std::string& place, const JobItem& v) {
-            job.pretensions.push_back({place, v.number()});
-            if (!(job.pretensions.back().force > 0)) v.fail("is a force above 0, by which the bolt is drawn together");
-          });
-        }},
-       {"couple",
-        [&](const JobItem& i) {
-          i.for_each([&](const std::string& name, const JobItem& v) { job.couplings.push_back(coupling_of(v, name)); });
-        }},
-       {"gravity", [&](const JobItem& i) { job.gravity = i.vector(); }}});
+  const auto each = [](auto add) { return [add](const JobItem& all) { all.for_each(add); }; };
+  using Place = const std::string&;
+  item.take({{"materials", [&](const JobItem& i) { take_materials(i, job); }},
+             {"fix", each([&](Place place, const JobItem& v) { job.fixes.push_back(fix_of(v, place)); })},
+             {"load", each([&](Place place, const JobItem& v) {
+                job.loads.push_back({place, v.vector()});
+              })},
+             {"pressure", each([&](Place place, const JobItem& v) {
+                job.pressures.push_back({place, v.number()});
+              })},
+             {"friction", each([&](Place place, const JobItem& v) { job.contacts.push_back(contact_of(v, place)); })},
+             {"pretension", each([&](Place place, const JobItem& v) {
+                job.pretensions.push_back({place, v.number()});
+                if (!(job.pretensions.back().force > 0))
+                  v.fail("is a force above 0, by which the bolt is drawn together");
+              })},
+             {"couple", each([&](Place name, const JobItem& v) { job.couplings.push_back(coupling_of(v, name)); })},
+             {"gravity", [&](const JobItem& i) { job.gravity = i.vector(); }}});
 }
 
 JobJson parsed_job(const std::string& text, const std::string& name) {

@@ -4,6 +4,7 @@
 #include <octafront/tet_mesh.h>
 
 #include "base/places/places.h"
+#include "formats/jobs/job_plan.h"
 #include "formats/parts/mesh_parts.h"
 
 #include <cstdint>
@@ -54,5 +55,15 @@ class JobPlaces {
   const MeshParts& parts_;
   const SolverJob& job_;
 };
+
+class MeshOutput;
+
+/// Young's modulus where nothing is said: of steel in N, mm and t.
+inline constexpr double kSteelYoung = 210000;
+
+/// Plans the materials of a job and which of them each region is of, with a density for each that the input knows one
+/// of; regions that have none get steel, with a note. Throws OptionError for a place that there is not.
+void plan_materials(MeshOutput& out, const MeshParts& mesh, const SolverJob& job, const JobPlaces& places,
+                    JobPlan& plan);
 
 }  // namespace octafront::io

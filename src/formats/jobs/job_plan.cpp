@@ -1,14 +1,13 @@
+
 #include "formats/jobs/job_plan.h"
 
 #include <octafront/error.h>
 
 #include "base/places/places.h"
-#include "formats/jobs/job_materials.h"
 #include "formats/jobs/job_places.h"
 
 #include <algorithm>
 #include <cmath>
-#include <map>
 #include <set>
 
 #include <fmt/core.h>

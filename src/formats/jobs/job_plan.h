@@ -1,11 +1,8 @@
 #pragma once
 
-// formats/jobs: a job of a solver (octafront/solver_job.h) as it meets a mesh: places become parts, forces shares of
-// nodes, bolts sections. Writers put it into the words of their solvers.
-
 #include <octafront/solver_job.h>
+#include <octafront/vec.h>
 
-#include "formats/jobs/cylinder.h"
 #include "formats/parts/mesh_output.h"
 #include "formats/parts/mesh_parts.h"
 
@@ -13,12 +10,30 @@
 #include <cstdint>
 #include <map>
 #include <optional>
+#include <span>
 #include <string>
 #include <string_view>
 #include <utility>
 #include <vector>
 
 namespace octafront::io {
+
+/// The axis of a cylinder, a point on it in its middle, its radius, and how far it reaches to both sides.
+struct Cylinder {
+  Vec3 middle, axis;
+  double radius = 0, half_length = 0;
+};
+
+/// The cylinder that triangles lie on; none where they lie on no cylinder, within a fiftieth of the radius.
+std::optional<Cylinder> cylinder_of(std::span<const std::array<Vec3, 3>> triangles);
+
+/// Parts of a vector at a point: radial, tangential, axial.
+Vec3 in_system_of(const Cylinder& cylinder, Vec3 at, Vec3 vector);
+/// Whether two have the same axis, as closely as facets tell.
+bool share_axis(const Cylinder& a, const Cylinder& b);
+
+// formats/jobs: a job of a solver (octafront/solver_job.h) as it meets a mesh: places become parts, forces shares of
+// nodes, bolts sections. Writers put it into the words of their solvers.
 
 /// Of an evenly spread force the share of each node, by shape functions: of all together 1. Ascending.
 using NodeShares = std::vector<std::pair<VertexIndex, double>>;

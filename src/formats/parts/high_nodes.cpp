@@ -1,12 +1,4 @@
-#include "formats/parts/high_nodes.h"
-
-#include "base/geometry/tet_lattice.h"
 #include "formats/parts/mesh_parts.h"
-
-#include <algorithm>
-#include <array>
-#include <span>
-#include <vector>
 
 namespace octafront::io {
 

@@ -3,6 +3,7 @@
 #include <octafront/error.h>
 
 #include <cstdio>
+#include <limits>
 #include <system_error>
 
 #include <fmt/core.h>
@@ -101,6 +102,10 @@ fs::path MeshOutput::piece_file(const std::string& name) {
   }
   pending_.push_back({scratch_ / name, target_.parent_path() / name});
   return pending_.back().temporary;
+}
+
+void MeshOutput::require_32_bits(std::size_t items, std::string_view why) const {
+  if (items > std::numeric_limits<std::int32_t>::max()) throw OutputError(fmt::format("{}: {}", target_.string(), why));
 }
 
 void MeshOutput::commit() {

@@ -59,6 +59,9 @@ class MeshOutput {
       notes_.push_back(std::move(text));
   }
 
+  /// Throws OutputError, "TARGET: " and why, where there are more items than 32 bits count.
+  void require_32_bits(std::size_t items, std::string_view why) const;
+
   /// All files get their names. Throws OutputError.
   void commit();
   std::vector<std::string>& notes() { return notes_; }

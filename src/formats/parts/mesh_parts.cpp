@@ -1,3 +1,4 @@
+
 #include "formats/parts/mesh_parts.h"
 
 #include <octafront/io.h>
@@ -6,7 +7,6 @@
 #include "base/core/shared_value.h"
 #include "base/mesh/face_table.h"
 
-#include <algorithm>
 #include <functional>
 #include <limits>
 #include <map>

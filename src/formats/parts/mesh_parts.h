@@ -1,9 +1,5 @@
 #pragma once
 
-// formats/parts: a mesh between file and arrays. Readers leave elements and faces (raw_mesh.h, surface_builder.h),
-// which become an ordered TetMesh or SurfaceMesh in one place; writers see regions, patches, curves and sets as one
-// list of parts.
-
 #include <octafront/tet_mesh.h>
 
 #include "base/core/groups.h"
@@ -11,16 +7,20 @@
 #include "base/geometry/tet_lattice.h"
 #include "base/mesh/edge_nodes.h"
 #include "base/mesh/label_at.h"
-#include "formats/parts/high_nodes.h"
 
 #include <algorithm>
 #include <array>
+#include <cstddef>
 #include <cstdint>
 #include <span>
 #include <string>
 #include <vector>
 
 namespace octafront::io {
+
+// formats/parts: a mesh between file and arrays. Readers leave elements and faces (raw_mesh.h, surface_builder.h),
+// which become an ordered TetMesh or SurfaceMesh in one place; writers see regions, patches, curves and sets as one
+// list of parts.
 
 /// A region, patch, curve or further set of a mesh, as files have them.
 struct Part {
@@ -47,6 +47,37 @@ struct Side {
 using CellRoom = std::array<VertexIndex, 35>;
 using FaceRoom = std::array<VertexIndex, 15>;
 using EdgeRoom = std::array<VertexIndex, 5>;
+
+/// The nodes of elements of order 3 and 4, and of their faces and edges, in the order of VTK's Lagrange cells.
+class HighNodes {
+ public:
+  /// Of a mesh of a lower order nothing may be asked.
+  explicit HighNodes(const TetMesh& mesh);
+
+  VertexIndex of_tet(std::size_t t, std::size_t k) const;
+  /// Of a face, as its corners run, of the element beside it.
+  VertexIndex of_face(const Side& side, const Triangle& corners, std::size_t k) const;
+  /// Of an edge of a curve.
+  VertexIndex of_edge(const Edge& edge, std::size_t k) const;
+
+ private:
+  struct Use {
+    VertexIndex high;
+    TetIndex tet;
+  };
+  /// The node of an element that has these weights.
+  template <std::size_t kCorners>
+  VertexIndex node(TetIndex t, const std::array<VertexIndex, kCorners>& corners,
+                   const std::array<int, kCorners>& weights) const;
+
+  const TetMesh& mesh_;
+  Groups<Use, std::uint64_t> at_low_;  ///< edges between vertices of curves, at their lower ends
+};
+
+/// Node k of a cell of VTK of order 3 or 4 among those of tet_lattice(); of Gmsh among those of VTK.
+std::size_t lattice_node_of_vtk(int order, std::size_t k);
+std::size_t lattice_node_of_gmsh(int order, std::size_t k);
+std::size_t vtk_node_of_gmsh(int order, std::size_t k);
 
 /// A mesh as writers see it: the boundary and the interfaces as one list of faces, and all that has a number or name as
 /// one list of parts, which every format turns into sets of its own. Refers to the mesh. O(mesh).

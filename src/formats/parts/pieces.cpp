@@ -46,12 +46,9 @@ void Pieces::find_rims() {
   std::uint32_t shared = 0;
   for (std::size_t v = 0; v < points; ++v)
     if (is_shared[v] != 0) place_[v] = shared++;
-  constexpr std::size_t kRange = 16384;
-  const auto at_rims =
-      parallel_collect<TetIndex>(mesh_.tets.size(), kRange, [&](std::size_t begin, std::size_t end, auto& out) {
-        for (auto t = static_cast<TetIndex>(begin); t < end; ++t)
-          if (std::ranges::any_of(mesh_.tets[t], [&](VertexIndex v) { return is_shared[v] != 0; })) out.push_back(t);
-      });
+  const auto at_rims = parallel_select(mesh_.tets.size(), [&](TetIndex t) {
+    return std::ranges::any_of(mesh_.tets[t], [&](VertexIndex v) { return is_shared[v] != 0; });
+  });
   star_ = Groups<>(shared, [&](const auto& add) {
     for (const TetIndex t : at_rims)
       for (const VertexIndex v : mesh_.tets[t])

@@ -1,13 +1,11 @@
-#include "formats/parts/share_piece.h"
-
 #include "base/mesh/mesh_share.h"
 #include "base/shared/in_parts.h"
 #include "base/shared/marks.h"
 #include "base/shared/shared_tets.h"
 #include "formats/parts/boundary.h"
+#include "formats/parts/pieces.h"
 
 #include <algorithm>
-#include <utility>
 
 namespace octafront::io {
 

@@ -32,9 +32,14 @@ void check_claim(const Input& input, const char* at, const Claim& claim, std::ui
 }
 
 std::uint64_t read_count(Scanner& scan, const Input& input, std::string_view what, std::uint64_t least_bytes) {
+  return read_count(scan, input, fmt::format("the number of {}", what), what, least_bytes);
+}
+
+std::uint64_t read_count(Scanner& scan, const Input& input, std::string_view expected, std::string_view what,
+                         std::uint64_t least_bytes) {
   scan.at_end();
   const char* const at = scan.position();
-  const std::int64_t n = scan.integer(fmt::format("the number of {}", what));
+  const std::int64_t n = scan.integer(expected);
   if (n < 0) scan.fail(fmt::format("{} {}; the file is damaged", n, what));
   check_claim(input, at, {static_cast<std::uint64_t>(n), least_bytes, what}, scan.bytes_left());
   return static_cast<std::uint64_t>(n);

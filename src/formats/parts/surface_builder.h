@@ -70,5 +70,8 @@ struct Claim {
 void check_claim(const Input& input, const char* at, const Claim& claim, std::uint64_t bytes_left);
 /// Reads the number of what follows, of which each takes `least_bytes` or more.
 std::uint64_t read_count(Scanner& scan, const Input& input, std::string_view what, std::uint64_t least_bytes);
+/// The same, where something else is said to be expected.
+std::uint64_t read_count(Scanner& scan, const Input& input, std::string_view expected, std::string_view what,
+                         std::uint64_t least_bytes);
 
 }  // namespace octafront::io

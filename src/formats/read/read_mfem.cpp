@@ -122,12 +122,7 @@ class Mfem {
   }
 
   std::uint64_t read_count_of(std::string_view what, std::uint64_t least_bytes) {
-    scan_.at_end();
-    const char* const at = scan_.position();
-    const std::int64_t count = scan_.integer("a count");
-    if (count < 0) scan_.fail(fmt::format("{} {}; the file is damaged", count, what));
-    check_claim(input_, at, {static_cast<std::uint64_t>(count), least_bytes, what}, scan_.bytes_left());
-    return static_cast<std::uint64_t>(count);
+    return read_count(scan_, input_, "a count", what, least_bytes);
   }
 
   std::vector<MfemElement> read_elements(std::string_view section) {
@@ -183,10 +178,7 @@ class Mfem {
     if (const std::int64_t d = scan_.integer("the dimension of space"); d != 3)
       scan_.fail(fmt::format("its vertices have {} coordinates, not 3", d));
     check_claim(input_, scan_.position(), {vertices_, 6, "vertices"}, scan_.bytes_left());
-    for (std::size_t v = 0; v < vertices_; ++v) {
-      const double x = scan_.number("a coordinate"), y = scan_.number("a coordinate"), z = scan_.number("a coordinate");
-      raw_.points.push_back({x, y, z});
-    }
+    for (std::size_t v = 0; v < vertices_; ++v) raw_.points.push_back(scan_.point());
     take_linear();
   }
 

@@ -39,45 +39,10 @@ std::uint64_t nodes_of_type(std::int64_t type) {
 /// What a TetMesh has of them: 0 for points to 3 for tetrahedra, linear or quadratic; -1 for others. Quadrilaterals
 /// become triangles, wedges and pyramids tetrahedra.
 int kept_dimension(std::int64_t type) {
-  switch (type) {
-    case 15:
-      return 0;
-    case 1:
-    case 8:
-    case 26:
-    case 27:
-    case 28:
-      return 1;
-    case 2:
-    case 3:
-    case 9:
-    case 10:
-    case 16:
-    case 20:
-    case 21:
-    case 22:
-    case 23:
-    case 24:
-    case 25:
-      return 2;
-    case 4:
-    case 5:
-    case 6:
-    case 7:
-    case 11:
-    case 12:
-    case 13:
-    case 14:
-    case 17:
-    case 18:
-    case 19:
-    case 29:
-    case 30:
-    case 31:
-      return 3;
-    default:
-      return -1;
-  }
+  constexpr std::array<std::int8_t, 32> kDimensions{-1, 1, 2, 2, 3, 3, 3, 3, 1, 2, 2, 3, 3, 3, 3, 0,
+                                                    2,  3, 3, 3, 2, 2, 2, 2, 2, 2, 1, 1, 1, 3, 3, 3};
+  const bool is_known = type >= 0 && type < static_cast<std::int64_t>(kDimensions.size());
+  return is_known ? kDimensions[static_cast<std::size_t>(type)] : -1;
 }
 
 /// So many of the nodes of an element are asked for: of elements of order 3 and more the corners, and none in the

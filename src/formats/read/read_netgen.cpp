@@ -57,11 +57,7 @@ class Netgen {
       } else if (section == "edgedescriptors") {
         for_each(section, 8, [this] { read_edge_descriptor(); });
       } else if (section == "points") {
-        for_each(section, 6, [this] {
-          const double x = scan_.number("a coordinate"), y = scan_.number("a coordinate"),
-                       z = scan_.number("a coordinate");
-          raw_.points.push_back({x, y, z});
-        });
+        for_each(section, 6, [this] { raw_.points.push_back(scan_.point()); });
       } else if (section == "curvedelements") {
         read_curves();
       } else if (section == "materials") {
@@ -82,12 +78,8 @@ class Netgen {
  private:
   template <class Read>
   void for_each(std::string_view section, std::uint64_t least_bytes, const Read& read_one) {
-    scan_.at_end();
-    const char* const at = scan_.position();
-    const std::int64_t count = scan_.integer("a count");
-    if (count < 0) scan_.fail(fmt::format("{} {}; the file is damaged", count, section));
-    check_claim(input_, at, {static_cast<std::uint64_t>(count), least_bytes, section}, scan_.bytes_left());
-    for (std::int64_t i = 0; i < count; ++i) {
+    const std::uint64_t count = read_count(scan_, input_, "a count", section, least_bytes);
+    for (std::uint64_t i = 0; i < count; ++i) {
       read_one();
       scan_.skip_line();
     }
@@ -176,23 +168,14 @@ class Netgen {
 
   template <class T, class Read>
   std::vector<T> read_list(std::string_view what, std::uint64_t least_bytes, const Read& read_one) {
-    scan_.at_end();
-    const char* const at = scan_.position();
-    const std::int64_t count = scan_.integer("a count");
-    if (count < 0) scan_.fail(fmt::format("{} {}; the file is damaged", count, what));
-    check_claim(input_, at, {static_cast<std::uint64_t>(count), least_bytes, what}, scan_.bytes_left());
     std::vector<T> all;
-    for (std::int64_t i = 0; i < count; ++i) all.push_back(read_one());
+    for_each(what, least_bytes, [&] { all.push_back(read_one()); });
     return all;
   }
 
   void read_curves() {
     const auto number = [&] { return scan_.integer("a number of curved elements"); };
-    const auto vector = [&] {
-      const double x = scan_.number("a coefficient"), y = scan_.number("a coefficient"),
-                   z = scan_.number("a coefficient");
-      return Vec3{x, y, z};
-    };
+    const auto vector = [&] { return scan_.point("a coefficient"); };
     CurvesOfFile& curves = curves_.emplace();
     curves.edges.order = read_list<std::int64_t>("edges", 2, number);
     curves.faces.order = read_list<std::int64_t>("faces", 2, number);

@@ -4,7 +4,7 @@
 #include <octafront/error.h>
 
 #include "base/core/parallel.h"
-#include "formats/containers/line_ranges.h"
+#include "formats/containers/input.h"
 #include "formats/containers/scanner.h"
 #include "formats/parts/surface_builder.h"
 #include "formats/read/readers.h"
@@ -151,11 +151,17 @@ class Obj {
 
   // A line goes on behind a backslash at its end. All words of a line are reached through these three functions.
 
+  bool goes_on() const { return *at_ == '\\' && at_ + 1 != end_ && is_line_end(at_[1]); }
+  /// To the last letter of the line end.
+  void pass_line_end() {
+    ++at_;
+    if (*at_ == '\r' && at_ + 1 != end_ && at_[1] == '\n') ++at_;
+  }
+
   bool at_line_end() {
     for (; at_ != end_; ++at_) {
-      if (*at_ == '\\' && at_ + 1 != end_ && is_line_end(at_[1])) {
-        ++at_;
-        if (*at_ == '\r' && at_ + 1 != end_ && at_[1] == '\n') ++at_;
+      if (goes_on()) {
+        pass_line_end();
       } else if (is_line_end(*at_) || *at_ == '#') {
         return true;
       } else if (!is_blank(*at_)) {
@@ -168,15 +174,14 @@ class Obj {
   std::string_view word() {
     if (at_line_end()) return {};
     const char* const start = at_;
-    while (at_ != end_ && !is_blank(*at_) && !(*at_ == '\\' && at_ + 1 != end_ && is_line_end(at_[1]))) ++at_;
+    while (at_ != end_ && !is_blank(*at_) && !goes_on()) ++at_;
     return {start, static_cast<std::size_t>(at_ - start)};
   }
 
   void skip_to_next_line() {
     for (; at_ != end_; ++at_) {
-      if (*at_ == '\\' && at_ + 1 != end_ && is_line_end(at_[1])) {
-        ++at_;
-        if (*at_ == '\r' && at_ + 1 != end_ && at_[1] == '\n') ++at_;
+      if (goes_on()) {
+        pass_line_end();
       } else if (is_line_end(*at_)) {
         ++at_;
         return;

@@ -4,7 +4,7 @@
 #include <octafront/error.h>
 
 #include "base/core/parallel.h"
-#include "formats/containers/line_ranges.h"
+#include "formats/containers/input.h"
 #include "formats/containers/scanner.h"
 #include "formats/parts/surface_builder.h"
 #include "formats/read/readers.h"
@@ -131,8 +131,7 @@ class Off {
     check_claim(input_, counts_at_, {vertices_, 6, "vertices"}, scan_.bytes_left());
     builder_.points.reserve(vertices_);
     for (std::uint64_t i = 0; i < vertices_; ++i) {
-      const double x = scan_.number("a coordinate"), y = scan_.number("a coordinate"), z = scan_.number("a coordinate");
-      builder_.points.push_back({x, y, z});
+      builder_.points.push_back(scan_.point());
       if (layout_ == Layout::kByLine) scan_.skip_line();
     }
   }

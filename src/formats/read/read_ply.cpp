@@ -4,7 +4,7 @@
 #include <octafront/error.h>
 
 #include "base/core/parallel.h"
-#include "formats/containers/line_ranges.h"
+#include "formats/containers/input.h"
 #include "formats/containers/scanner.h"
 #include "formats/parts/surface_builder.h"
 #include "formats/read/ply_header.h"

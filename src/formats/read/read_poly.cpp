@@ -182,14 +182,9 @@ class Poly {
       if ((first_ != 0 && first_ != 1) || id != first_ + static_cast<std::int64_t>(i))
         scan.fail(fmt::format("expected node {}, found {}; nodes count from 0 or 1, one after the other",
                               static_cast<std::int64_t>(i) + (first_ == 0 ? 0 : 1), id));
-      builder_.points.push_back(point(scan));
+      builder_.points.push_back(scan.point());
       scan.skip_line();
     }
-  }
-
-  static Vec3 point(Scanner& scan) {
-    const double x = scan.number("a coordinate"), y = scan.number("a coordinate"), z = scan.number("a coordinate");
-    return {x, y, z};
   }
 
   std::uint32_t corner() {
@@ -243,7 +238,7 @@ class Poly {
     }
     for (std::uint64_t k = 0; k < holes; ++k) {
       scan_.integer("the number of a hole");
-      facet.holes.push_back(point(scan_));
+      facet.holes.push_back(scan_.point());
       scan_.skip_line();
     }
     add_facet(facet, marker, at);
@@ -270,7 +265,7 @@ class Poly {
     const std::uint64_t holes = read_count(scan_, input_, "holes", 6);
     for (std::uint64_t k = 0; k < holes; ++k) {
       scan_.integer("the number of a hole");
-      voids_.push_back(point(scan_));
+      voids_.push_back(scan_.point());
       scan_.skip_line();
     }
   }
@@ -281,7 +276,7 @@ class Poly {
     bool sized = false;
     for (std::uint64_t k = 0; k < regions; ++k) {
       scan_.integer("the number of a region");
-      const Vec3 at = point(scan_);
+      const Vec3 at = scan_.point();
       const double attribute = scan_.at_line_end() ? 0 : scan_.number("an attribute");
       sized = sized || !scan_.at_line_end();
       regions_.push_back({fmt::format("region_{:g}", attribute), at});

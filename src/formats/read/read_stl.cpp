@@ -4,7 +4,7 @@
 #include <octafront/error.h>
 
 #include "base/core/parallel.h"
-#include "formats/containers/line_ranges.h"
+#include "formats/containers/input.h"
 #include "formats/containers/scanner.h"
 #include "formats/parts/surface_builder.h"
 #include "formats/read/readers.h"
@@ -190,8 +190,7 @@ class AsciiStl {
     while (equal_ignoring_case(scan_.peek_word(), "vertex")) {
       scan_.word();
       corners_.push_back(static_cast<std::uint32_t>(builder_.points.size()));
-      const double x = scan_.number("a coordinate"), y = scan_.number("a coordinate"), z = scan_.number("a coordinate");
-      builder_.points.push_back({x, y, z});
+      builder_.points.push_back(scan_.point());
     }
     if (corners_.size() < 3) scan_.fail_expected(fmt::format("\"vertex\" number {} of a facet", corners_.size() + 1));
     expect("endloop", "behind the corners of a facet");

@@ -1,11 +1,8 @@
 // TetGen: NAME.node, NAME.ele, and, where they are there, NAME.face and NAME.edge. Numbers count from 0 or 1, as the
 // first node says. Markers and the first attribute of tetrahedra are references.
 
-#include "formats/read/read_tetgen.h"
-
 #include "formats/containers/named_file.h"
 #include "formats/containers/scanner.h"
-#include "formats/parts/raw_mesh.h"
 #include "formats/parts/surface_builder.h"
 #include "formats/read/readers.h"
 
@@ -54,8 +51,7 @@ class Tetgen {
       if ((first_ != 0 && first_ != 1) || id != first_ + i)
         scan.fail(
             fmt::format("expected node {}, found {}; nodes count from 0 or 1, one after the other", first_ + i, id));
-      const double x = scan.number("a coordinate"), y = scan.number("a coordinate"), z = scan.number("a coordinate");
-      raw_.points.push_back({x, y, z});
+      raw_.points.push_back(scan.point());
       scan.skip_line();
     }
   }

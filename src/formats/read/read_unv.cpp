@@ -212,7 +212,7 @@ class Unv {
       for (int i = 0; i < 7; ++i) scan_.integer("the head of a group");
       const std::int64_t count = scan_.integer("the number of its members");
       scan_.skip_line();
-      scan_.set_position(behind_line_end());
+      scan_.skip_line_end();
       const std::string name(scan_.rest_of_line());
       std::array<RawMesh::Group, 4> groups;
       for (std::size_t k = 0; k < 4; ++k) groups[k] = {name, static_cast<Kind>(k), {}};
@@ -238,13 +238,6 @@ class Unv {
     return std::any_of(raw_.groups.begin(), raw_.groups.end(), [&](const RawMesh::Group& known) {
       return known.name == group.name && known.kind == group.kind && known.members == group.members;
     });
-  }
-
-  const char* behind_line_end() {
-    const char* at = scan_.position();
-    if (scan_.bytes_left() > 0 && *at == '\r') ++at;
-    if (scan_.bytes_left() > static_cast<std::size_t>(at - scan_.position()) && *at == '\n') ++at;
-    return at;
   }
 
   /// Of the kinds of element that have groups.

@@ -64,10 +64,7 @@ class Vtk {
 
   void next_line() {
     scan_.skip_line();
-    const char* at = scan_.position();
-    if (scan_.bytes_left() > 0 && *at == '\r') ++at;
-    if (scan_.bytes_left() > static_cast<std::size_t>(at - scan_.position()) && *at == '\n') ++at;
-    scan_.set_position(at);
+    scan_.skip_line_end();
   }
 
   /// Passes over the word if it is that one; binary values stay where they are.

@@ -1,12 +1,5 @@
 #pragma once
 
-// formats/read: readers, one source per format. They take the bytes of a file and leave a SurfaceFile or RawMesh,
-// unrepaired, but with every index in range and every coordinate finite; they believe nothing that a file says about
-// itself before its bytes bear it out.
-
-// The readers, one per format: how surely a file is one of theirs, and from bytes in memory to a SurfaceFile or a
-// RawMesh. All throw InputError.
-
 #include <octafront/io.h>
 
 #include "formats/containers/file_head.h"
@@ -14,6 +7,13 @@
 #include "formats/parts/raw_mesh.h"
 
 namespace octafront::io {
+
+// formats/read: readers, one source per format. They take the bytes of a file and leave a SurfaceFile or RawMesh,
+// unrepaired, but with every index in range and every coordinate finite; they believe nothing that a file says about
+// itself before its bytes bear it out.
+
+// The readers, one per format: how surely a file is one of theirs, and from bytes in memory to a SurfaceFile or a
+// RawMesh. All throw InputError.
 
 Told told_stl(const FileHead& head);
 SurfaceFile read_stl(const Input& input);
@@ -65,5 +65,13 @@ RawMesh read_tetgen(const Input& input);
 RawMesh read_xdmf(const Input& input);
 /// By the name of the input: HDF5 reads files itself.
 RawMesh read_med(const Input& input);
+
+/// The files of one mesh; null: there is none.
+struct TetgenFiles {
+  const Input &node, &ele;
+  const Input *face, *edge;
+};
+
+RawMesh read_tetgen(const TetgenFiles& files);
 
 }  // namespace octafront::io

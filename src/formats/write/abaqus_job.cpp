@@ -1,7 +1,7 @@
 // A job for Abaqus and CalculiX, in words that both know. Bolts are drawn together in a step of their own, then kept as
 // long as they are while the loads come.
 
-#include "formats/write/abaqus_job.h"
+#include "formats/write/job_writers.h"
 
 #include <algorithm>
 

@@ -2,9 +2,8 @@
 // MASS21 without mass that CERIG or RBE3 leads to faces, sections of bolts constraint equations, whose sign needs no
 // normal of a section as that of PRETS179 does.
 
-#include "formats/write/ansys_job.h"
-
 #include "base/geometry/frame.h"
+#include "formats/write/job_writers.h"
 
 #include <algorithm>
 #include <array>

@@ -2,12 +2,10 @@
 // LIAISON_SOLIDE or LIAISON_RBE3 leads to faces; opened contacts are tied by LIAISON_MAIL, whose masters are solids. No
 // node may be held twice, for its equations would be singular: groups of nodes leave out what others hold.
 
-#include "formats/write/aster_job.h"
-
 #include <octafront/error.h>
 
 #include "base/core/elementary.h"
-#include "formats/containers/text_writer.h"
+#include "formats/write/job_writers.h"
 
 #include <algorithm>
 #include <array>

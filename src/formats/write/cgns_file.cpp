@@ -37,10 +37,9 @@ void CgnsFile::text(const std::string& path, const char* label, const std::strin
 void CgnsFile::write_root(float version) {
   attributes("/", "HDF5 MotherNode", "Root Node of HDF5 File", "MT");
   const auto words = [&](const char* path, const std::string& value, std::size_t length) {
-    file_.dataset(path, {length}, Hdf5Writer::Fill<std::int8_t>([&](std::uint64_t first, std::span<std::int8_t> to) {
-                    for (std::uint64_t i = 0; i < to.size(); ++i)
-                      to[i] = first + i < value.size() ? static_cast<std::int8_t>(value[first + i]) : std::int8_t{0};
-                  }));
+    file_.values<std::int8_t>(path, {length}, [&](std::uint64_t i) {
+      return i < value.size() ? static_cast<std::int8_t>(value[i]) : std::int8_t{0};
+    });
   };
   words("/ format", "IEEE_LITTLE_32", 15);
   words("/ hdf5version", "HDF5 Version 1.8.0", kName);

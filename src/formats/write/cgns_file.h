@@ -41,9 +41,7 @@ class CgnsFile {
   void node(const std::string& path, const char* label, const char* type);
   template <class T, class ValueAt>
   void data(const std::string& path, const std::vector<std::uint64_t>& shape, const ValueAt& value_at) {
-    file_.dataset(path + "/ data", shape, Hdf5Writer::Fill<T>([&](std::uint64_t first, std::span<T> to) {
-                    for (std::uint64_t i = 0; i < to.size(); ++i) to[i] = value_at(first + i);
-                  }));
+    file_.values<T>(path + "/ data", shape, value_at);
   }
   /// A node that is an array.
   template <class T, class ValueAt>

@@ -1,12 +1,11 @@
-#include "formats/write/foam_case.h"
-
 #include <octafront/error.h>
 #include <octafront/units.h>
+
+#include "formats/write/foam_files.h"
 
 #include <algorithm>
 #include <cmath>
 #include <fstream>
-#include <vector>
 
 #include <fmt/format.h>
 

@@ -2,8 +2,6 @@
 
 #include "base/core/parallel.h"
 #include "base/mesh/face_table.h"
-#include "formats/parts/legal_names.h"
-#include "formats/write/foam_case.h"
 
 #include <algorithm>
 #include <tuple>

@@ -1,7 +1,5 @@
 #pragma once
 
-// OpenFOAM's files: their heads, zones, patches, and the faces between cells.
-
 #include "formats/containers/text_writer.h"
 #include "formats/parts/legal_names.h"
 #include "formats/parts/mesh_output.h"
@@ -20,6 +18,8 @@
 #include <vector>
 
 namespace octafront::io {
+
+// OpenFOAM's files: their heads, zones, patches, and the faces between cells.
 
 inline constexpr NameRules kFoamNames{.also = "_-."};
 inline constexpr const char* kFoamLocation = "constant/polyMesh";
@@ -107,5 +107,19 @@ class InterfacePatches {
   std::map<Triangle, std::uint32_t> patch_at_;  ///< by sorted corners
   std::vector<bool> is_listed_;                 ///< per point: most faces are of none
 };
+
+// What a polyMesh becomes a case by: WriteOptions::deck.
+
+/// The type of a patch in a case, by its name.
+std::string_view foam_type_of(std::string_view name);
+
+/// Throws OptionError if no case can be written around this polyMesh, OutputError where files of another one are.
+void check_foam_case(const std::filesystem::path& target, const WriteOptions& options);
+
+/// What coordinates count where a case is written: 1 without.
+double metres_of_case(const WriteOptions& options);
+
+/// Writes the rest of a case for simpleFoam. `names`: legal ones of MeshParts::parts().
+void write_foam_case(MeshOutput& out, const MeshParts& mesh, std::span<const std::string> names);
 
 }  // namespace octafront::io

@@ -1,20 +1,17 @@
 // A job of linear statics for Nastran. Forces are in the basic system, supports in that of their nodes; rigid points
 // are RBE2, distributing ones RBE3.
 
-#include "formats/write/nastran_job.h"
-
 #include <octafront/error.h>
 
 #include "base/geometry/frame.h"
 #include "formats/parts/legal_names.h"
+#include "formats/write/job_writers.h"
 
 #include <algorithm>
 #include <array>
 #include <span>
-#include <string>
 #include <string_view>
 #include <type_traits>
-#include <vector>
 
 namespace octafront::io {
 namespace {

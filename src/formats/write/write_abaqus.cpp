@@ -11,7 +11,7 @@
 #include "base/core/wording.h"
 #include "formats/containers/text_writer.h"
 #include "formats/parts/mixed_cells.h"
-#include "formats/write/abaqus_job.h"
+#include "formats/write/job_writers.h"
 #include "formats/write/writers.h"
 
 #include <algorithm>

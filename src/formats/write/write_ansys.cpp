@@ -4,7 +4,7 @@
 
 #include "formats/containers/text_writer.h"
 #include "formats/parts/mixed_cells.h"
-#include "formats/write/ansys_job.h"
+#include "formats/write/job_writers.h"
 #include "formats/write/writers.h"
 
 #include <array>

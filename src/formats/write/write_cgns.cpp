@@ -2,15 +2,12 @@
 // sections behind), and a boundary condition with a family for each patch. Fields are solutions at vertices and in
 // cells, vectors as VelocityX to VelocityZ. Numbers count from 1.
 
-#include <octafront/error.h>
-
 #include "formats/parts/field_columns.h"
 #include "formats/parts/mixed_cells.h"
 #include "formats/write/cgns_file.h"
 #include "formats/write/writers.h"
 
 #include <array>
-#include <limits>
 #include <string>
 
 #include <fmt/core.h>
@@ -112,9 +109,8 @@ class CgnsWriter {
 }  // namespace
 
 void write_cgns(MeshOutput& out, const MeshParts& mesh) {
-  constexpr std::size_t kMost = std::numeric_limits<std::int32_t>::max();
-  if (mesh.points() > kMost || mesh.tets() + mesh.faces() + mesh.edges() > kMost)
-    throw OutputError(out.target().string() + ": too many elements for CGNS with 32 bits; write .vtu");
+  out.require_32_bits(std::max(mesh.points(), mesh.tets() + mesh.faces() + mesh.edges()),
+                      "too many elements for CGNS with 32 bits; write .vtu");
   CgnsWriter(out, mesh).write();
 }
 

@@ -2,14 +2,11 @@
 // each patch with its boundary condition; cells as NFACE_n, a section for each region, by their faces, which are
 // negative where they look inward. Values at vertices of the tetrahedra are solutions in cells.
 
-#include <octafront/error.h>
-
 #include "base/dual/poly_measures.h"
 #include "formats/write/cgns_file.h"
 #include "formats/write/writers.h"
 
 #include <algorithm>
-#include <limits>
 #include <numeric>
 
 namespace octafront::io {
@@ -117,9 +114,8 @@ class CgnsPolyhedra {
 }  // namespace
 
 void write_cgns_polyhedra(MeshOutput& out, const MeshParts& parts, const PolyMesh& mesh) {
-  constexpr std::size_t kMost = std::numeric_limits<std::int32_t>::max();
-  if (mesh.face_points.size() > kMost || mesh.faces() + mesh.cells() > kMost)
-    throw OutputError(out.target().string() + ": too many faces for CGNS with 32 bits; write .vtu");
+  out.require_32_bits(std::max(mesh.face_points.size(), mesh.faces() + mesh.cells()),
+                      "too many faces for CGNS with 32 bits; write .vtu");
   CgnsPolyhedra(out, parts, mesh).write();
 }
 

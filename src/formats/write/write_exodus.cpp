@@ -3,8 +3,6 @@
 // in the mesh. Fields are variables of nodes and elements, each number by itself, in one time step. Blocks of pyramids
 // and wedges behind others of their region have names of their own, "layers_wedges", and numbers behind all.
 
-#include <octafront/error.h>
-
 #include "formats/containers/netcdf_writer.h"
 #include "formats/parts/field_columns.h"
 #include "formats/parts/mixed_cells.h"
@@ -12,7 +10,6 @@
 
 #include <algorithm>
 #include <array>
-#include <limits>
 #include <numeric>
 #include <string>
 
@@ -109,13 +106,17 @@ class ExodusWriter {
                    {{"name", std::string("ID")}});
     declare_texts(prefix + "_names", dimension, std::move(names));
   }
-  /// Of sets, numbered from 1.
-  void declare_sets(const std::string& prefix, const char* dimension, const std::vector<std::size_t>& parts) {
+  /// Of sets, numbered from 1; then declare(number, part) of each.
+  template <class Declare>
+  void declare_sets(const std::string& prefix, const char* dimension, const std::vector<std::size_t>& parts,
+                    const Declare& declare) {
+    if (parts.empty()) return;
     std::vector<std::string> names;
     for (const std::size_t p : parts) names.push_back(names_[p]);
     std::vector<std::int32_t> numbers(parts.size());
     std::iota(numbers.begin(), numbers.end(), 1);
     declare_list(prefix, file_.dimension(dimension, parts.size()), std::move(names), std::move(numbers));
+    for (std::size_t s = 0; s < parts.size(); ++s) declare(std::to_string(s + 1), mesh_.parts()[parts[s]]);
   }
 
   /// Elements of one region and kind: a run of order_.
@@ -177,16 +178,13 @@ class ExodusWriter {
   }
 
   void declare_node_sets(const std::vector<std::size_t>& parts) {
-    if (parts.empty()) return;
-    declare_sets("ns", "num_node_sets", parts);
-    for (std::size_t s = 0; s < parts.size(); ++s) {
-      const std::string n = std::to_string(s + 1);
-      auto nodes = mesh_.nodes_of(mesh_.parts()[parts[s]]);
+    declare_sets("ns", "num_node_sets", parts, [this](const std::string& n, const Part& part) {
+      auto nodes = mesh_.nodes_of(part);
       const std::uint32_t count = file_.dimension("num_nod_ns" + n, nodes.size());
       file_.variable("node_ns" + n, Type::kInt, {count}, [nodes = std::move(nodes)](std::uint64_t i) {
         return Value(static_cast<std::int32_t>(nodes[i]) + 1);
       });
-    }
+    });
   }
 
   std::size_t cell_at(std::uint32_t face) const { return cells_.cell_of(mesh_.sides()[cells_.first_face(face)].tet); }
@@ -198,31 +196,25 @@ class ExodusWriter {
   }
 
   void declare_side_sets(const std::vector<std::size_t>& parts) {
-    if (parts.empty()) return;
-    declare_sets("ss", "num_side_sets", parts);
-    for (std::size_t s = 0; s < parts.size(); ++s) {
-      const std::string n = std::to_string(s + 1);
-      const std::vector<std::uint32_t> members = cells_.members(mesh_.parts()[parts[s]]);
+    declare_sets("ss", "num_side_sets", parts, [this](const std::string& n, const Part& part) {
+      const std::vector<std::uint32_t> members = cells_.members(part);
       const std::uint32_t count = file_.dimension("num_side_ss" + n, members.size());
       file_.variable("elem_ss" + n, Type::kInt, {count}, [this, members](std::uint64_t i) {
         return Value(static_cast<std::int32_t>(place_[cell_at(members[i])]) + 1);
       });
       file_.variable("side_ss" + n, Type::kInt, {count},
                      [this, members](std::uint64_t i) { return Value(side_at(members[i])); });
-    }
+    });
   }
 
   void declare_element_sets(const std::vector<std::size_t>& parts) {
-    if (parts.empty()) return;
-    declare_sets("els", "num_elem_sets", parts);
-    for (std::size_t s = 0; s < parts.size(); ++s) {
-      const std::string n = std::to_string(s + 1);
-      const std::vector<std::uint32_t> members = cells_.members(mesh_.parts()[parts[s]]);
+    declare_sets("els", "num_elem_sets", parts, [this](const std::string& n, const Part& part) {
+      const std::vector<std::uint32_t> members = cells_.members(part);
       const std::uint32_t count = file_.dimension("num_ele_els" + n, members.size());
       file_.variable("elem_els" + n, Type::kInt, {count}, [this, members](std::uint64_t i) {
         return Value(static_cast<std::int32_t>(place_[members[i]]) + 1);
       });
-    }
+    });
   }
 
   std::uint32_t declare_names(const std::string& prefix, const std::vector<FieldColumn>& columns) {
@@ -269,9 +261,8 @@ class ExodusWriter {
 }  // namespace
 
 void write_exodus(MeshOutput& out, const MeshParts& mesh) {
-  constexpr std::size_t kMost = std::numeric_limits<std::int32_t>::max();
-  if (mesh.points() > kMost || mesh.tets() > kMost)
-    throw OutputError(out.target().string() + ": Exodus counts with 32 bits, too few for this mesh; write .vtu");
+  out.require_32_bits(std::max(mesh.points(), mesh.tets()),
+                      "Exodus counts with 32 bits, too few for this mesh; write .vtu");
   ExodusWriter(out, mesh).write();
 }
 

@@ -1,6 +1,5 @@
 // The polyMesh folder of write_openfoam.cpp, of polyhedra.
 
-#include "formats/write/foam_case.h"
 #include "formats/write/foam_files.h"
 #include "formats/write/writers.h"
 

@@ -8,12 +8,11 @@
 #include "formats/containers/hdf5_file.h"
 #include "formats/parts/field_columns.h"
 #include "formats/parts/mixed_cells.h"
-#include "formats/write/aster_job.h"
+#include "formats/write/job_writers.h"
 #include "formats/write/writers.h"
 
 #include <algorithm>
 #include <array>
-#include <limits>
 #include <string>
 #include <vector>
 
@@ -113,10 +112,8 @@ class MedWriter {
   /// A dataset component by component, with the attributes that all have.
   template <class T, class ValueAt>
   void values(const std::string& path, std::uint64_t components, std::uint64_t count, const ValueAt& value_at) {
-    file_.dataset(path, {components * count}, Hdf5Writer::Fill<T>([&](std::uint64_t first, std::span<T> to) {
-                    for (std::uint64_t i = 0; i < to.size(); ++i)
-                      to[i] = static_cast<T>(value_at((first + i) / count, (first + i) % count));
-                  }));
+    file_.values<T>(path, {components * count},
+                    [&](std::uint64_t i) { return static_cast<T>(value_at(i / count, i % count)); });
     file_.attribute(path, "CGT", 1);
     file_.attribute(path, "NBR", static_cast<std::int32_t>(count));
   }
@@ -277,11 +274,8 @@ class MedWriter {
     file_.attribute(profile, "NBR", static_cast<std::int32_t>(end - begin));
     file_.attribute(profile, "NGA", 1);
     const std::uint64_t count = end - begin;
-    file_.dataset(profile + "/CO", {count * field.components},
-                  Hdf5Writer::Fill<double>([&](std::uint64_t first, std::span<double> to) {
-                    for (std::uint64_t i = 0; i < to.size(); ++i)
-                      to[i] = cells_.value_of(field, begin + (first + i) % count, (first + i) / count);
-                  }));
+    file_.values<double>(profile + "/CO", {count * field.components},
+                         [&](std::uint64_t i) { return cells_.value_of(field, begin + i % count, i / count); });
   }
 
   Hdf5Writer file_;
@@ -297,9 +291,8 @@ class MedWriter {
 }  // namespace
 
 void write_med(MeshOutput& out, const MeshParts& mesh) {
-  constexpr std::size_t kMost = std::numeric_limits<std::int32_t>::max();
-  if (mesh.points() > kMost || mesh.tets() > kMost)
-    throw OutputError(out.target().string() + ": MED files have 32-bit numbers, too few for this mesh; write .vtu");
+  out.require_32_bits(std::max(mesh.points(), mesh.tets()),
+                      "MED files have 32-bit numbers, too few for this mesh; write .vtu");
   if (out.job() == nullptr) return MedWriter(out, mesh, nullptr).write();
   const AsterNames names = aster_names(out, mesh, *out.job());
   if (!names.points.empty() && !out.fields().empty())

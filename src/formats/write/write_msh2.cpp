@@ -2,12 +2,8 @@
 // indices plus 1, elements counting edges first, then faces, then cells. Of a periodic cell, $Periodic pairs the nodes
 // of each patch that is a copy with those of its original.
 
-#include <octafront/error.h>
-
 #include "formats/write/msh_writing.h"
 #include "formats/write/writers.h"
-
-#include <limits>
 
 namespace octafront::io {
 namespace {
@@ -96,9 +92,8 @@ class Msh2Writer {
 }  // namespace
 
 void write_msh2(MeshOutput& out, const MeshParts& mesh) {
-  constexpr std::size_t kMost = std::numeric_limits<std::int32_t>::max();
-  if (mesh.points() > kMost || mesh.edges() + mesh.faces() + mesh.tets() > kMost)
-    throw OutputError(out.target().string() + ": MSH 2.2 counts with 32 bits, too few for this mesh; write MSH 4.1");
+  out.require_32_bits(std::max(mesh.points(), mesh.edges() + mesh.faces() + mesh.tets()),
+                      "MSH 2.2 counts with 32 bits, too few for this mesh; write MSH 4.1");
   note_fields_left_out(out);
   Msh2Writer(out.file(), mesh, out.fields(), out.as_text()).write();
 }

@@ -13,7 +13,6 @@
 #include "base/mesh/adjacency.h"
 #include "formats/containers/text_writer.h"
 #include "formats/parts/mixed_cells.h"
-#include "formats/write/foam_case.h"
 #include "formats/write/foam_files.h"
 #include "formats/write/writers.h"
 

@@ -4,7 +4,7 @@
 #include "base/shared/packing.h"
 #include "formats/containers/atomic_file.h"
 #include "formats/parts/mesh_output.h"
-#include "formats/parts/share_piece.h"
+#include "formats/parts/pieces.h"
 #include "formats/write/vtk_pieces.h"
 #include "formats/write/writers.h"
 

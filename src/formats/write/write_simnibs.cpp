@@ -10,7 +10,6 @@
 
 #include <algorithm>
 #include <array>
-#include <limits>
 #include <span>
 #include <utility>
 #include <vector>
@@ -118,9 +117,8 @@ class SimnibsWriter {
 }  // namespace
 
 void write_simnibs(MeshOutput& out, const MeshParts& mesh) {
-  constexpr std::size_t kMost = std::numeric_limits<std::int32_t>::max();
-  if (mesh.points() > kMost || mesh.faces() + mesh.tets() > kMost)
-    throw OutputError(out.target().string() + ": MSH 2.2 counts with 32 bits, too few for this mesh");
+  out.require_32_bits(std::max(mesh.points(), mesh.faces() + mesh.tets()),
+                      "MSH 2.2 counts with 32 bits, too few for this mesh");
   for (const Part& part : mesh.parts(Part::Origin::kRegion))
     if (const std::int64_t label = mesh.number_of(Part::Origin::kRegion, part.number); label < 1 || label >= kSurfaces)
       throw OutputError(fmt::format("{}: the region {} has the label {}; SimNIBS has labels from 1 to below {}",

@@ -8,7 +8,6 @@
 #include "formats/write/vtk_pieces.h"
 #include "formats/write/writers.h"
 
-#include <algorithm>
 #include <map>
 #include <set>
 #include <string>
@@ -58,10 +57,8 @@ class VtkHdfWriter {
     per_part("NumberOfConnectivityIds", [](const Sizes& s) { return s.nodes; });
     LinkNames links;
     for (const auto& [name, number] : names)
-      file_.dataset(kRoot + "/FieldData/" + links.of(name), {1},
-                    Hdf5Writer::Fill<std::int32_t>([n = number](std::uint64_t, std::span<std::int32_t> to) {
-                      std::fill(to.begin(), to.end(), static_cast<std::int32_t>(n));
-                    }));
+      file_.values<std::int32_t>(kRoot + "/FieldData/" + links.of(name), {1},
+                                 [n = static_cast<std::int32_t>(number)](std::uint64_t) { return n; });
     for (const Sizes& s : sizes_) {
       all_.points += s.points;
       all_.cells += s.cells;
@@ -101,19 +98,14 @@ class VtkHdfWriter {
  private:
   template <class SizeOf>
   void per_part(const std::string& name, const SizeOf& size_of) {
-    file_.dataset(kRoot + "/" + name, {sizes_.size()},
-                  Hdf5Writer::Fill<std::int64_t>([&](std::uint64_t first, std::span<std::int64_t> to) {
-                    for (std::size_t k = 0; k < to.size(); ++k)
-                      to[k] = static_cast<std::int64_t>(size_of(sizes_[first + k]));
-                  }));
+    file_.values<std::int64_t>(kRoot + "/" + name, {sizes_.size()},
+                               [&](std::uint64_t k) { return static_cast<std::int64_t>(size_of(sizes_[k])); });
   }
 
   template <class T, class ValueAt>
   void rows(const std::string& path, const std::vector<std::uint64_t>& shape, Hdf5Writer::Stretch stretch,
             const ValueAt& value_at) {
-    file_.rows(kRoot + path, shape, stretch, Hdf5Writer::Fill<T>([&](std::uint64_t first, std::span<T> to) {
-                 for (std::uint64_t k = 0; k < to.size(); ++k) to[k] = value_at(first + k);
-               }));
+    file_.rows(kRoot + path, shape, stretch, Hdf5Writer::each<T>(value_at));
   }
   template <class T, class ValueAt>
   void of_points(const std::string& name, const ValueAt& value_at, std::uint64_t components = 1) {

@@ -126,11 +126,7 @@ class XdmfWriter {
     out.line("      <Topology TopologyType=\"{}\" NumberOfElements=\"{}\" NodesPerElement=\"{}\">",
              grid.topology[mesh_.second_order()], n, each);
     item(out, fmt::format("{} {}", n, each), "Int", 8, h5_, path);
-    values_->dataset(path, {n, each},
-                     Hdf5Writer::Fill<std::int64_t>([&](std::uint64_t first, std::span<std::int64_t> to) {
-                       for (std::uint64_t k = 0; k < to.size(); ++k)
-                         to[k] = node(grid, (first + k) / each, (first + k) % each);
-                     }));
+    values_->values<std::int64_t>(path, {n, each}, [&](std::uint64_t i) { return node(grid, i / each, i % each); });
   }
 
   /// Each element behind the number of its type.
@@ -142,10 +138,7 @@ class XdmfWriter {
     }
     out.line("      <Topology TopologyType=\"Mixed\" NumberOfElements=\"{}\">", count(grid));
     item(out, std::to_string(all.size()), "Int", 8, h5_, path);
-    values_->dataset(path, {all.size()},
-                     Hdf5Writer::Fill<std::int64_t>([&](std::uint64_t first, std::span<std::int64_t> to) {
-                       std::copy_n(all.begin() + static_cast<std::ptrdiff_t>(first), to.size(), to.begin());
-                     }));
+    values_->values<std::int64_t>(path, {all.size()}, [&](std::uint64_t i) { return all[i]; });
   }
 
   static std::int64_t mixed_type(std::uint64_t nodes, Kind kind) {
@@ -154,11 +147,8 @@ class XdmfWriter {
   }
 
   void write_points(const std::string& path) {
-    values_->dataset(path, {mesh_.points(), 3},
-                     Hdf5Writer::Fill<double>([&](std::uint64_t first, std::span<double> to) {
-                       for (std::uint64_t k = 0; k < to.size(); ++k)
-                         to[k] = mesh_.mesh().points[(first + k) / 3][static_cast<int>((first + k) % 3)];
-                     }));
+    values_->values<double>(path, {mesh_.points(), 3},
+                            [&](std::uint64_t i) { return mesh_.mesh().points[i / 3][static_cast<int>(i % 3)]; });
   }
 
   void write_fields(TextWriter& out, const std::string& group) {
@@ -170,10 +160,8 @@ class XdmfWriter {
       const std::string path = fmt::format("{}/field_{}", group, ++number);
       item(out, fmt::format("{} {}", n, each), "Float", 8, h5_, path);
       out << "      </Attribute>\n";
-      values_->dataset(path, {n, each}, Hdf5Writer::Fill<double>([&](std::uint64_t first, std::span<double> to) {
-                         for (std::uint64_t k = 0; k < to.size(); ++k)
-                           to[k] = cells_.value_of(field, (first + k) / each, (first + k) % each);
-                       }));
+      values_->values<double>(path, {n, each},
+                              [&](std::uint64_t i) { return cells_.value_of(field, i / each, i % each); });
     }
   }
 
@@ -184,9 +172,7 @@ class XdmfWriter {
     out.line("      <Attribute AttributeType=\"Scalar\" Center=\"{}\" Name=\"{}>", center, name);
     item(out, fmt::format("{} 1", n), "Int", 4, h5_, path);
     out << "      </Attribute>\n";
-    values_->dataset(path, {n, 1}, Hdf5Writer::Fill<std::int32_t>([&](std::uint64_t first, std::span<std::int32_t> to) {
-                       for (std::uint64_t k = 0; k < to.size(); ++k) to[k] = value_at(first + k);
-                     }));
+    values_->values<std::int32_t>(path, {n, 1}, value_at);
   }
 
   void write_set(TextWriter& out, const std::string& name, const Part& part, std::uint64_t n, const std::string& path) {

@@ -1,6 +1,5 @@
-#include "images/files/grids.h"
-
 #include "formats/containers/scanner.h"
+#include "images/files/voxels.h"
 
 #include <algorithm>
 #include <cmath>

@@ -2,9 +2,9 @@
 // ITK: x to the left, y to the back, z up. https://itk.org/Wiki/ITK/MetaIO/Documentation
 
 #include "formats/containers/scanner.h"
-#include "images/files/grids.h"
 #include "images/files/image_readers.h"
 #include "images/files/slice_files.h"
+#include "images/files/voxels.h"
 
 #include <algorithm>
 #include <cmath>

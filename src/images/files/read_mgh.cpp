@@ -2,12 +2,13 @@
 // bytes. https://surfer.nmr.mgh.harvard.edu/fswiki/FsTutorial/MghFormat
 
 #include "images/files/byte_source.h"
-#include "images/files/grids.h"
 #include "images/files/image_readers.h"
+#include "images/files/voxels.h"
 
 #include <algorithm>
 #include <bit>
 #include <cstring>
+#include <map>
 #include <optional>
 
 #include <fmt/core.h>
@@ -31,20 +32,13 @@ std::int32_t word(std::string_view header, std::size_t n) {
 }
 
 std::optional<VoxelType> type_of_mgh(std::int32_t code) {
-  switch (code) {
-    case 0:
-      return VoxelType::kUInt8;
-    case 1:
-      return VoxelType::kInt32;
-    case 3:
-      return VoxelType::kFloat32;
-    case 4:
-      return VoxelType::kInt16;
-    case 10:
-      return VoxelType::kUInt16;
-    default:
-      return std::nullopt;
-  }
+  static const std::map<std::int32_t, VoxelType> kTypes{{0, VoxelType::kUInt8},
+                                                        {1, VoxelType::kInt32},
+                                                        {3, VoxelType::kFloat32},
+                                                        {4, VoxelType::kInt16},
+                                                        {10, VoxelType::kUInt16}};
+  const auto found = kTypes.find(code);
+  return found == kTypes.end() ? std::nullopt : std::optional(found->second);
 }
 
 /// Where voxels lie: the header has the directions of the axes, and what the middle of the volume is in RAS.

@@ -3,14 +3,15 @@
 
 #include "formats/containers/scanner.h"
 #include "images/files/byte_source.h"
-#include "images/files/grids.h"
 #include "images/files/image_readers.h"
+#include "images/files/voxels.h"
 
 #include <algorithm>
 #include <bit>
 #include <cmath>
 #include <cstring>
 #include <filesystem>
+#include <map>
 #include <optional>
 
 #include <fmt/core.h>
@@ -114,30 +115,12 @@ Header header_2(const Fields& f) {
 }
 
 std::optional<VoxelType> type_of_nifti(int datatype) {
-  switch (datatype) {
-    case 2:
-      return VoxelType::kUInt8;
-    case 4:
-      return VoxelType::kInt16;
-    case 8:
-      return VoxelType::kInt32;
-    case 16:
-      return VoxelType::kFloat32;
-    case 64:
-      return VoxelType::kFloat64;
-    case 256:
-      return VoxelType::kInt8;
-    case 512:
-      return VoxelType::kUInt16;
-    case 768:
-      return VoxelType::kUInt32;
-    case 1024:
-      return VoxelType::kInt64;
-    case 1280:
-      return VoxelType::kUInt64;
-    default:
-      return std::nullopt;
-  }
+  static const std::map<int, VoxelType> kTypes{
+      {2, VoxelType::kUInt8},    {4, VoxelType::kInt16},    {8, VoxelType::kInt32},    {16, VoxelType::kFloat32},
+      {64, VoxelType::kFloat64}, {256, VoxelType::kInt8},   {512, VoxelType::kUInt16}, {768, VoxelType::kUInt32},
+      {1024, VoxelType::kInt64}, {1280, VoxelType::kUInt64}};
+  const auto found = kTypes.find(datatype);
+  return found == kTypes.end() ? std::nullopt : std::optional(found->second);
 }
 
 std::string name_of_other_type(int datatype) {

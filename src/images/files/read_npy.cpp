@@ -3,8 +3,8 @@
 
 #include "formats/containers/scanner.h"
 #include "images/files/byte_source.h"
-#include "images/files/grids.h"
 #include "images/files/image_readers.h"
+#include "images/files/voxels.h"
 
 #include <map>
 #include <optional>

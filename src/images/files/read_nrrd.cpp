@@ -2,10 +2,10 @@
 // https://teem.sourceforge.net/nrrd/format.html. Names of segments are read as 3D Slicer writes them (.seg.nrrd).
 
 #include "formats/containers/scanner.h"
-#include "images/files/grids.h"
 #include "images/files/image_readers.h"
 #include "images/files/masks.h"
 #include "images/files/slice_files.h"
+#include "images/files/voxels.h"
 
 #include <algorithm>
 #include <cmath>
@@ -35,51 +35,22 @@ std::vector<std::string> words_of(std::string_view text) {
   return words;
 }
 
-std::optional<VoxelType> type_of_nrrd(const std::string& name) {
-  static const std::map<std::string, VoxelType> kNames{
-      {"signed char", VoxelType::kInt8},
-      {"int8", VoxelType::kInt8},
-      {"int8_t", VoxelType::kInt8},
-      {"uchar", VoxelType::kUInt8},
-      {"unsigned char", VoxelType::kUInt8},
-      {"uint8", VoxelType::kUInt8},
-      {"uint8_t", VoxelType::kUInt8},
-      {"short", VoxelType::kInt16},
-      {"short int", VoxelType::kInt16},
-      {"signed short", VoxelType::kInt16},
-      {"signed short int", VoxelType::kInt16},
-      {"int16", VoxelType::kInt16},
-      {"int16_t", VoxelType::kInt16},
-      {"ushort", VoxelType::kUInt16},
-      {"unsigned short", VoxelType::kUInt16},
-      {"unsigned short int", VoxelType::kUInt16},
-      {"uint16", VoxelType::kUInt16},
-      {"uint16_t", VoxelType::kUInt16},
-      {"int", VoxelType::kInt32},
-      {"signed int", VoxelType::kInt32},
-      {"int32", VoxelType::kInt32},
-      {"int32_t", VoxelType::kInt32},
-      {"uint", VoxelType::kUInt32},
-      {"unsigned int", VoxelType::kUInt32},
-      {"uint32", VoxelType::kUInt32},
-      {"uint32_t", VoxelType::kUInt32},
-      {"longlong", VoxelType::kInt64},
-      {"long long", VoxelType::kInt64},
-      {"long long int", VoxelType::kInt64},
-      {"signed long long", VoxelType::kInt64},
-      {"signed long long int", VoxelType::kInt64},
-      {"int64", VoxelType::kInt64},
-      {"int64_t", VoxelType::kInt64},
-      {"ulonglong", VoxelType::kUInt64},
-      {"unsigned long long", VoxelType::kUInt64},
-      {"unsigned long long int", VoxelType::kUInt64},
-      {"uint64", VoxelType::kUInt64},
-      {"uint64_t", VoxelType::kUInt64},
-      {"float", VoxelType::kFloat32},
-      {"double", VoxelType::kFloat64},
-  };
-  const auto found = kNames.find(name);
-  return found == kNames.end() ? std::nullopt : std::optional(found->second);
+std::optional<VoxelType> type_of_nrrd(std::string_view name) {
+  static const std::vector<std::pair<VoxelType, std::vector<std::string_view>>> kNames{
+      {VoxelType::kInt8, {"signed char", "int8", "int8_t"}},
+      {VoxelType::kUInt8, {"uchar", "unsigned char", "uint8", "uint8_t"}},
+      {VoxelType::kInt16, {"short", "short int", "signed short", "signed short int", "int16", "int16_t"}},
+      {VoxelType::kUInt16, {"ushort", "unsigned short", "unsigned short int", "uint16", "uint16_t"}},
+      {VoxelType::kInt32, {"int", "signed int", "int32", "int32_t"}},
+      {VoxelType::kUInt32, {"uint", "unsigned int", "uint32", "uint32_t"}},
+      {VoxelType::kInt64,
+       {"longlong", "long long", "long long int", "signed long long", "signed long long int", "int64", "int64_t"}},
+      {VoxelType::kUInt64, {"ulonglong", "unsigned long long", "unsigned long long int", "uint64", "uint64_t"}},
+      {VoxelType::kFloat32, {"float"}},
+      {VoxelType::kFloat64, {"double"}}};
+  for (const auto& [type, names] : kNames)
+    if (std::ranges::find(names, name) != names.end()) return type;
+  return std::nullopt;
 }
 
 /// Fields and keys up to the empty line, or the end.

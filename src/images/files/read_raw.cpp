@@ -1,9 +1,9 @@
 // Raw voxels, and the JSON file beside them that says what they are:
 //   {"size": [256, 256, 108], "type": "int16", "spacing": [0.957, 0.957, 1.5]}
 
-#include "images/files/grids.h"
 #include "images/files/image_readers.h"
 #include "images/files/slice_files.h"
+#include "images/files/voxels.h"
 
 #include <algorithm>
 #include <array>

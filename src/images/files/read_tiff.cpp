@@ -1,6 +1,5 @@
 // Stacks of TIFF: the pages of a file, or files of a folder, one upon the other in order of their names.
 
-#include "images/files/grids.h"
 #include "images/files/image_readers.h"
 #include "images/files/tiff_pages.h"
 #include "images/files/voxels.h"

@@ -1,7 +1,7 @@
 #pragma once
 
-#include "images/files/grids.h"
 #include "images/files/image_readers.h"
+#include "images/files/voxels.h"
 
 #include <string>
 #include <vector>

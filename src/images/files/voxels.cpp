@@ -151,23 +151,37 @@ Image::Values decoded(std::string_view bytes, const StoredVoxels& stored, std::v
   return as_floats(n, scaled, range, notes);
 }
 
+/// Calls visit(T{}) with the type of number that voxels are stored as.
+template <class Visit>
+auto with_stored(VoxelType type, const Visit& visit) {
+  switch (type) {
+    case VoxelType::kInt8:
+      return visit(std::int8_t{});
+    case VoxelType::kUInt8:
+      return visit(std::uint8_t{});
+    case VoxelType::kInt16:
+      return visit(std::int16_t{});
+    case VoxelType::kUInt16:
+      return visit(std::uint16_t{});
+    case VoxelType::kInt32:
+      return visit(std::int32_t{});
+    case VoxelType::kUInt32:
+      return visit(std::uint32_t{});
+    case VoxelType::kInt64:
+      return visit(std::int64_t{});
+    case VoxelType::kUInt64:
+      return visit(std::uint64_t{});
+    case VoxelType::kFloat32:
+      return visit(float{});
+    default:
+      return visit(double{});
+  }
+}
+
 }  // namespace
 
 std::uint64_t bytes_of(VoxelType type) {
-  switch (type) {
-    case VoxelType::kInt8:
-    case VoxelType::kUInt8:
-      return 1;
-    case VoxelType::kInt16:
-    case VoxelType::kUInt16:
-      return 2;
-    case VoxelType::kInt32:
-    case VoxelType::kUInt32:
-    case VoxelType::kFloat32:
-      return 4;
-    default:
-      return 8;
-  }
+  return with_stored(type, [](auto stored) { return sizeof stored; });
 }
 
 bool is_integer(VoxelType type) {
@@ -181,28 +195,7 @@ void require_memory_for(const io::Input& input, std::uint64_t voxels, VoxelType 
 }
 
 Image::Values values_of(std::string_view bytes, const StoredVoxels& stored, std::vector<std::string>& notes) {
-  switch (stored.type) {
-    case VoxelType::kInt8:
-      return decoded<std::int8_t>(bytes, stored, notes);
-    case VoxelType::kUInt8:
-      return decoded<std::uint8_t>(bytes, stored, notes);
-    case VoxelType::kInt16:
-      return decoded<std::int16_t>(bytes, stored, notes);
-    case VoxelType::kUInt16:
-      return decoded<std::uint16_t>(bytes, stored, notes);
-    case VoxelType::kInt32:
-      return decoded<std::int32_t>(bytes, stored, notes);
-    case VoxelType::kUInt32:
-      return decoded<std::uint32_t>(bytes, stored, notes);
-    case VoxelType::kInt64:
-      return decoded<std::int64_t>(bytes, stored, notes);
-    case VoxelType::kUInt64:
-      return decoded<std::uint64_t>(bytes, stored, notes);
-    case VoxelType::kFloat32:
-      return decoded<float>(bytes, stored, notes);
-    default:
-      return decoded<double>(bytes, stored, notes);
-  }
+  return with_stored(stored.type, [&](auto as) { return decoded<decltype(as)>(bytes, stored, notes); });
 }
 
 Image::Values narrowed(const std::vector<std::int32_t>& values, std::vector<std::string>& notes) {

@@ -5,9 +5,8 @@
 #include "base/core/parallel.h"
 #include "base/core/thread_limit.h"
 #include "base/core/wording.h"
-#include "images/labels/closing.h"
+#include "images/labels/label_steps.h"
 #include "images/labels/runs.h"
-#include "images/labels/small_contacts.h"
 
 #include <algorithm>
 #include <cmath>

@@ -1,6 +1,5 @@
-#include "images/labels/closing.h"
-
 #include "base/core/parallel.h"
+#include "images/labels/label_steps.h"
 
 #include <algorithm>
 #include <array>

@@ -1,7 +1,6 @@
-#include "images/labels/small_contacts.h"
-
 #include "base/core/disjoint_sets.h"
 #include "base/core/elementary.h"
+#include "images/labels/label_steps.h"
 
 #include <algorithm>
 #include <array>

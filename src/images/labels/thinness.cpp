@@ -1,4 +1,4 @@
-#include "images/labels/thinness.h"
+#include "images/labels/label_steps.h"
 
 #include <array>
 #include <cstddef>

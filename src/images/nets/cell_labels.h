@@ -2,9 +2,9 @@
 
 #include <octafront/image_surface.h>
 
-#include "images/nets/label_sizes.h"
 #include "images/nets/lattice.h"
 #include "images/nets/net.h"
+#include "images/nets/net_steps.h"
 
 #include <vector>
 

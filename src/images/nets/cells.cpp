@@ -1,7 +1,7 @@
 #include "images/nets/cells.h"
 
 #include "base/core/parallel.h"
-#include "images/nets/fans.h"
+#include "images/nets/lattice.h"
 
 #include <algorithm>
 #include <bit>

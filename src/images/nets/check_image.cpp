@@ -1,6 +1,6 @@
-#include "images/nets/check_image.h"
-
 #include <octafront/error.h>
+
+#include "images/nets/net_steps.h"
 
 #include <algorithm>
 #include <cmath>

@@ -1,3 +1,4 @@
+
 #include "images/nets/conflicts.h"
 
 #include "base/core/elementary.h"

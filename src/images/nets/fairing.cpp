@@ -1,6 +1,5 @@
-#include "images/nets/fairing.h"
-
 #include "base/core/parallel.h"
+#include "images/nets/net_steps.h"
 
 #include <algorithm>
 #include <cmath>

@@ -1,4 +1,4 @@
-#include "images/nets/fans.h"
+#include "images/nets/lattice.h"
 
 namespace octafront::nets {
 

@@ -3,11 +3,10 @@
 #include <octafront/error.h>
 
 #include "base/core/wording.h"
+#include "base/geometry/same_place.h"
 
 #include <algorithm>
-#include <numeric>
 #include <optional>
-#include <tuple>
 #include <utility>
 
 #include <fmt/format.h>
@@ -34,18 +33,6 @@ Label label_called(const LabelImage& image, const SurfaceOfLabel& given) {
     if (fmt::format("{}", image.labels[l].value) == given.label) return static_cast<Label>(l);
   throw OptionError(fmt::format("`surface_of`: {} is for the label \"{}\", which the image does not have; it has {}",
                                 given.name, given.label, known_labels(image)));
-}
-
-/// Per point the first one at the same place: files such as STL say each corner of each triangle.
-std::vector<VertexIndex> first_at_place(const std::vector<Vec3>& points) {
-  const auto place = [&](VertexIndex v) { return std::tuple(points[v].x, points[v].y, points[v].z); };
-  std::vector<VertexIndex> order(points.size()), first(points.size());
-  std::iota(order.begin(), order.end(), 0);
-  std::sort(order.begin(), order.end(),
-            [&](VertexIndex a, VertexIndex b) { return std::pair(place(a), a) < std::pair(place(b), b); });
-  for (std::size_t i = 0; i < order.size(); ++i)
-    first[order[i]] = i > 0 && place(order[i]) == place(order[i - 1]) ? first[order[i - 1]] : order[i];
-  return first;
 }
 
 struct OpenEdges {

@@ -3,13 +3,12 @@
 
 #include "base/core/parallel.h"
 #include "base/core/thread_limit.h"
-#include "images/nets/assemble.h"
 #include "images/nets/cell_labels.h"
 #include "images/nets/cells.h"
-#include "images/nets/check_image.h"
+#include "images/nets/conflicts.h"
 #include "images/nets/function_surface.h"
 #include "images/nets/grey_values.h"
-#include "images/nets/resolve_conflicts.h"
+#include "images/nets/net_steps.h"
 #include "images/nets/stencils.h"
 
 #include <algorithm>

@@ -1,6 +1,5 @@
-#include "images/nets/label_sizes.h"
-
 #include "base/core/parallel.h"
+#include "images/nets/net_steps.h"
 
 #include <algorithm>
 

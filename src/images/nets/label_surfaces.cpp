@@ -2,15 +2,10 @@
 
 #include "base/core/thread_limit.h"
 #include "base/core/wording.h"
-#include "images/nets/assemble.h"
 #include "images/nets/cell_labels.h"
-#include "images/nets/check_image.h"
-#include "images/nets/fairing.h"
+#include "images/nets/conflicts.h"
 #include "images/nets/given_surfaces.h"
-#include "images/nets/label_sizes.h"
-#include "images/nets/place_on_surfaces.h"
-#include "images/nets/resolve_conflicts.h"
-#include "images/nets/volumes.h"
+#include "images/nets/net_steps.h"
 
 #include <cmath>
 #include <span>

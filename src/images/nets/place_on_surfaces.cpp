@@ -1,7 +1,5 @@
-#include "images/nets/place_on_surfaces.h"
-
 #include "base/core/parallel.h"
-#include "images/nets/cells.h"
+#include "images/nets/net_steps.h"
 
 #include <algorithm>
 #include <cmath>

@@ -1,4 +1,5 @@
-#include "images/nets/shelters.h"
+
+#include "images/nets/conflicts.h"
 
 #include <algorithm>
 #include <cmath>

@@ -1,8 +1,7 @@
-#include "images/nets/volumes.h"
 
 #include "base/core/conjugate_gradients.h"
 #include "base/core/parallel.h"
-#include "images/nets/diagonals.h"
+#include "images/nets/net_steps.h"
 
 #include <algorithm>
 #include <array>

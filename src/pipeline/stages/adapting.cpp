@@ -1,3 +1,4 @@
+
 #include "pipeline/stages/adapting.h"
 
 #include <octafront/error.h>
@@ -9,9 +10,8 @@
 #include "pipeline/stages/stages.h"
 #include "pipeline/stages/true_shape.h"
 #include "sizing/field/affordable.h"
-#include "sizing/sources/check_size_options.h"
 #include "sizing/sources/make_size_field.h"
-#include "sizing/sources/named_sizes.h"
+#include "sizing/sources/sources.h"
 
 #include <algorithm>
 #include <utility>

@@ -6,7 +6,7 @@
 #include "pipeline/stages/methods.h"
 #include "pipeline/stages/periodic.h"
 #include "pipeline/stages/shell.h"
-#include "sizing/sources/check_size_options.h"
+#include "sizing/sources/make_size_field.h"
 
 namespace octafront {
 

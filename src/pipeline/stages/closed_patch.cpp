@@ -1,9 +1,8 @@
-#include "pipeline/stages/closed_patch.h"
-
 #include <octafront/mend.h>
 
 #include "base/core/parallel.h"
 #include "base/geometry/measures.h"
+#include "pipeline/stages/stages.h"
 
 #include <algorithm>
 

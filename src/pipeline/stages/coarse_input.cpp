@@ -1,9 +1,7 @@
-#include "pipeline/stages/coarse_input.h"
 
 #include "base/core/parallel.h"
 #include "base/geometry/measures.h"
 #include "base/mesh/complex.h"
-#include "base/mesh/known_surface.h"
 #include "pipeline/stages/methods.h"
 #include "pipeline/stages/stages.h"
 #include "sizing/field/affordable.h"

@@ -1,5 +1,3 @@
-#include "pipeline/stages/domain_of_mesh.h"
-
 #include <octafront/generate.h>
 #include <octafront/named_groups.h>
 
@@ -8,6 +6,7 @@
 #include "base/mesh/adjacency.h"
 #include "base/mesh/complex_patches.h"
 #include "base/mesh/face_table.h"
+#include "pipeline/stages/moving.h"
 
 #include <algorithm>
 #include <utility>

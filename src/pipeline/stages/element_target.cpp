@@ -2,7 +2,7 @@
 #include "pipeline/stages/methods.h"
 #include "pipeline/stages/stages.h"
 #include "sizing/field/change_size_field.h"
-#include "sizing/sources/count_search.h"
+#include "sizing/sources/budget.h"
 
 #include <algorithm>
 #include <cmath>

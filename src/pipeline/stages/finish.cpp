@@ -10,7 +10,6 @@
 #include "pipeline/stages/adapting.h"
 #include "pipeline/stages/agreement.h"
 #include "pipeline/stages/contact_choice.h"
-#include "pipeline/stages/found_shapes.h"
 #include "pipeline/stages/kept_shape.h"
 #include "pipeline/stages/kept_volumes.h"
 #include "pipeline/stages/measure.h"
@@ -19,7 +18,6 @@
 #include "pipeline/stages/requirements.h"
 #include "pipeline/stages/shell.h"
 #include "pipeline/stages/true_shape.h"
-#include "pipeline/stages/volume_tolerance.h"
 
 #include <algorithm>
 #include <array>

@@ -1,11 +1,8 @@
-#include "pipeline/stages/follow_boundary.h"
-
-#include <octafront/surface_mesh.h>
-
 #include "base/core/parallel.h"
+#include "base/mesh/complex_patches.h"
+#include "pipeline/stages/stages.h"
 
 #include <algorithm>
-#include <vector>
 
 namespace octafront {
 namespace {
@@ -30,11 +27,7 @@ void renew_sources(TetMesh& mesh, const SurfaceMesh& before, const SurfaceMesh& 
 }
 
 void follow_boundary(const TetMesh& mesh, SurfaceMesh& filled) {
-  std::vector<Sides> sides_of_patch;
-  for (std::size_t t = 0; t < filled.sides.size(); ++t) {
-    if (filled.patch[t] >= sides_of_patch.size()) sides_of_patch.resize(filled.patch[t] + 1);
-    sides_of_patch[filled.patch[t]] = filled.sides[t];
-  }
+  const std::vector<Sides> sides_of_patch = sides_of_patches(filled);
   filled.triangles = mesh.boundary;
   filled.triangles.insert(filled.triangles.end(), mesh.interfaces.begin(), mesh.interfaces.end());
   filled.patch = mesh.patch;

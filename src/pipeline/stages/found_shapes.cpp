@@ -1,13 +1,11 @@
-#include "pipeline/stages/found_shapes.h"
-
 #include "base/geometry/measures.h"
 #include "base/mesh/edge_table.h"
 #include "base/places/places.h"
+#include "pipeline/stages/true_shape.h"
 
 #include <algorithm>
 #include <limits>
 #include <optional>
-#include <set>
 #include <tuple>
 #include <utility>
 

@@ -20,7 +20,6 @@
 #include "pipeline/stages/periodic.h"
 #include "pipeline/stages/requirements.h"
 #include "pipeline/stages/true_shape.h"
-#include "pipeline/stages/volume_tolerance.h"
 
 #include <algorithm>
 #include <optional>

@@ -12,9 +12,8 @@
 #include "base/places/places.h"
 #include "pipeline/stages/contact_choice.h"
 #include "pipeline/stages/finish.h"
-#include "pipeline/stages/found_shapes.h"
 #include "pipeline/stages/true_shape.h"
-#include "sizing/sources/named_sizes.h"
+#include "sizing/sources/sources.h"
 
 #include <algorithm>
 #include <cmath>

@@ -1,9 +1,8 @@
-#include "pipeline/stages/harmonic_inside.h"
-
 #include "base/core/conjugate_gradients.h"
 #include "base/core/groups.h"
 #include "base/core/parallel.h"
 #include "base/geometry/measures.h"
+#include "pipeline/stages/moving.h"
 
 #include <algorithm>
 #include <array>

@@ -12,7 +12,6 @@
 #include "improve/schedule/schedule.h"
 #include "periodic/paired_nodes.h"
 #include "pipeline/stages/adapting.h"
-#include "pipeline/stages/follow_boundary.h"
 #include "pipeline/stages/kept_volumes.h"
 #include "pipeline/stages/periodic.h"
 #include "pipeline/stages/requirements.h"

@@ -1,11 +1,10 @@
-#include "pipeline/stages/kept_items.h"
-
 #include <octafront/error.h>
 #include <octafront/named_groups.h>
 
 #include "base/core/flat_map.h"
 #include "base/mesh/face_table.h"
 #include "base/places/places.h"
+#include "pipeline/stages/adapting.h"
 
 #include <algorithm>
 #include <array>

@@ -1,3 +1,4 @@
+
 #include "pipeline/stages/kept_volumes.h"
 
 #include <octafront/quality.h>
@@ -15,7 +16,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <functional>
 #include <map>
 #include <utility>
 

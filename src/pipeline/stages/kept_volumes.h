@@ -1,14 +1,17 @@
 #pragma once
 
-// The volumes of regions: kept where that is asked for, compared with those of the input on the mesh that is handed
-// out, and what was lost said by region.
+#include <octafront/generate.h>
 
 #include "pipeline/stages/stages.h"
 
+#include <functional>
 #include <string>
 #include <vector>
 
 namespace octafront {
+
+// The volumes of regions: kept where that is asked for, compared with those of the input on the mesh that is handed
+// out, and what was lost said by region.
 
 /// What the regions shall have, by number: of CAD solids the true volumes, else those of the input; 0: not known.
 std::vector<double> wanted_volumes(const Prepared& input, const Domain& domain);
@@ -46,5 +49,22 @@ void note_volumes(const Prepared& input, const Filled& filled, const Options& op
 void note_volumes(const Prepared& input, const SurfaceMesh& made, const Options& options, const Stage& stage);
 /// The same of a mesh that was changed.
 void note_volumes_of_mesh(const Report& report, const Stage& stage);
+
+// What chords of elements cut off the regions: made less where the user asks for that, and refused where the mesh has
+// lost more than they do.
+
+/// The volumes that regions have in the input, and how deep chords may lie to keep them within a percent.
+struct KnownVolumes {
+  std::vector<double> volumes, depths;
+};
+/// By CAD where that is known, else by the surface.
+KnownVolumes known_volumes(const Domain& domain);
+
+/// Of CAD: throws MeshingError where regions of a linear mesh are off by more than what its chords cut off explains.
+void refuse_lost_volumes(const Domain& domain, const Filled& filled, Run& run);
+
+/// make(domain), again with smaller elements where regions are off by more than `percent`. Throws MeshingError where
+/// that does not help.
+Result with_volumes_within(double percent, const Domain& domain, const std::function<Result(const Domain&)>& make);
 
 }  // namespace octafront

@@ -13,8 +13,7 @@
 #include "base/geometry/predicates.h"
 #include "base/geometry/self_intersection.h"
 #include "base/mesh/periodic_nodes.h"
-#include "pipeline/stages/domain_of_mesh.h"
-#include "pipeline/stages/harmonic_inside.h"
+#include "pipeline/stages/moving.h"
 #include "pipeline/stages/stages.h"
 
 #include <algorithm>

@@ -1,8 +1,7 @@
-#include "pipeline/stages/narrow_place.h"
-
 #include "base/core/elementary.h"
 #include "base/geometry/measures.h"
 #include "base/mesh/complex.h"
+#include "pipeline/stages/requirements.h"
 
 #include <algorithm>
 #include <cmath>

@@ -1,3 +1,4 @@
+
 #include "pipeline/stages/requirements.h"
 
 #include <octafront/quality.h>
@@ -9,7 +10,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <string>
 #include <utility>
 #include <vector>
 

@@ -1,22 +1,35 @@
 #pragma once
 
-// What a finished mesh must keep (Options::require), and what is least in it: looked at on the elements that are handed
-// out, and said with the place.
-
 #include <octafront/adapt.h>
 #include <octafront/options.h>
 #include <octafront/report.h>
 #include <octafront/size_field.h>
+#include <octafront/surface_mesh.h>
 #include <octafront/tet_mesh.h>
 
 #include "base/core/stage.h"
-#include "pipeline/stages/narrow_place.h"
 
+#include <array>
 #include <cstdint>
 #include <functional>
 #include <optional>
+#include <string>
 
 namespace octafront {
+
+// What of the input is narrow at a place: it forces the elements there.
+
+struct NarrowPlace {
+  double degrees = 0;  ///< of the wedge, or of the narrow thing as seen from one end of the element
+  std::string words;   ///< what it is, and of which bodies: "walls of the input meet at 3 degrees, ..."
+};
+
+/// The narrowest wedge between walls, gap between them through a body, or line of the input within the size of an
+/// element, where it is below 20 degrees; if triangles were `kept`, also their own angles. Looks at all triangles.
+std::optional<NarrowPlace> narrow_place_at(const SurfaceMesh& input, const std::array<Vec3, 4>& element, bool kept);
+
+// What a finished mesh must keep (Options::require), and what is least in it: looked at on the elements that are handed
+// out, and said with the place.
 
 bool requires_something(const RequireOptions& options);
 /// Throws OptionError, with the reason, where a size is required that nobody asks for.

@@ -18,8 +18,6 @@
 #include "improve/schedule/schedule.h"
 #include "improve/schedule/slide_interfaces.h"
 #include "periodic/slide_pairs.h"
-#include "pipeline/stages/coarse_input.h"
-#include "pipeline/stages/follow_boundary.h"
 #include "pipeline/stages/kept_shape.h"
 #include "pipeline/stages/kept_volumes.h"
 #include "pipeline/stages/measure.h"
@@ -28,18 +26,15 @@
 #include "pipeline/stages/shell.h"
 #include "sizing/field/expected_tets.h"
 #include "sizing/sources/budget.h"
-#include "sizing/sources/check_size_options.h"
 #include "sizing/sources/curvature.h"
-#include "sizing/sources/kept_surface.h"
 #include "sizing/sources/make_size_field.h"
-#include "sizing/sources/named_sizes.h"
+#include "sizing/sources/sources.h"
 #include "soup/tidy/examine.h"
-#include "surface/remeshing/unfold.h"
+#include "surface/remeshing/mend_folds.h"
 
 #include <algorithm>
 #include <cmath>
 #include <map>
-#include <optional>
 
 #include <fmt/core.h>
 

@@ -1,34 +1,54 @@
 #pragma once
 
+#include <octafront/domain.h>
+#include <octafront/ids.h>
+#include <octafront/repair.h>
+#include <octafront/second_order.h>
+#include <octafront/size_field.h>
+#include <octafront/surface_mesh.h>
+#include <octafront/tet_mesh.h>
+
+#include "base/geometry/triangle_tree.h"
+#include "base/geometry/true_geometry.h"
+#include "base/mesh/edge_table.h"
+#include "base/mesh/known_surface.h"
+#include "base/shared/shared_tets.h"
+#include "fill/lattice/implicit_domain.h"
+#include "periodic/periodic_cell.h"
+#include "pipeline/stages/layered.h"
+#include "pipeline/stages/run.h"
+#include "surface/remeshing/remesh.h"
+
+#include <cstdint>
+#include <optional>
+#include <span>
+#include <utility>
+#include <vector>
+
+namespace octafront {
+
+struct SurfaceMesh;
+
+/// What repair closed (kClosedByRepair). Its rim is no line of the body where the surface goes on smoothly: no element
+/// need follow it. So it is meshed as a part of the patches around it, and named again in the mesh.
+struct ClosedPatch {
+  std::uint32_t patch = kNone;         ///< kNone: nothing was closed
+  std::vector<std::uint8_t> is_in_it;  ///< per triangle of the input; empty: none
+};
+
+/// Finds the patch by its name and gives its triangles to the patches around them.
+ClosedPatch take_closed_patch(SurfaceMesh& surface, const EdgeTable& edges);
+
+/// The triangles of the boundary that lie on it are of that patch again. If there are none, its name goes, if it is the
+/// last. `tree`: over the triangles of the input.
+void name_closed_patch(const ClosedPatch& closed, const TriangleTree& tree, SurfaceMesh& boundary);
+void name_closed_patch(const ClosedPatch& closed, const TriangleTree& tree, TetMesh& mesh);
+
 // pipeline/stages: the list of stages. Takes a domain and options, runs the wings one after the other, times them,
 // and leaves a checked mesh and a report. The public face is octafront/generate.h.
 //
 // One function each, in the order of the pipeline. What a stage takes is const and what it makes
 // is new, but for improvement, which changes the mesh in place; any of them can be called alone with a Run of its own.
-
-#include <octafront/domain.h>
-#include <octafront/repair.h>
-#include <octafront/second_order.h>
-#include <octafront/size_field.h>
-#include <octafront/tet_mesh.h>
-
-#include "base/geometry/true_geometry.h"
-#include "base/mesh/known_surface.h"
-#include "base/shared/shared_tets.h"
-#include "fill/lattice/implicit_domain.h"
-#include "periodic/periodic_cell.h"
-#include "pipeline/stages/closed_patch.h"
-#include "pipeline/stages/layered.h"
-#include "pipeline/stages/run.h"
-#include "surface/remeshing/remesh.h"
-
-#include <optional>
-#include <span>
-#include <utility>
-
-namespace octafront {
-
-struct SurfaceMesh;
 
 /// The input as every later stage needs it.
 struct Prepared {
@@ -136,5 +156,27 @@ SurfaceMesh boundary_of(const TetMesh& mesh);
 
 /// Fills in what the report says of every mesh: counts, volume, quality, hash. `comm`: as in measure.h.
 void describe(const TetMesh& mesh, Report& report, const Comm& comm = Comm(nullptr));
+
+// Images have a triangle for each face of a voxel, and scans one for each few points: far more than sizes need that are
+// much coarser.
+
+/// The domain of an image with triangles about half as large as the sizes that are asked for, so that sizes, trees and
+/// the surface front do not work on more; nothing where they are hardly larger than voxels, where sizes are measured on
+/// the surface, or where its triangles must stay.
+std::optional<Domain> coarse_domain(const Domain& domain, Run& run);
+
+/// The surface of one body likewise, if it has very many triangles, much smaller than automatic sizes, the size or the
+/// number of elements that is given, and the user bounds nowhere how far the new surface may stray: within a twentieth
+/// of its mean edge. Not where walls or gaps are about as narrow as that. REQUIRES a clean surface.
+std::optional<SurfaceMesh> coarse_surface(const SurfaceMesh& clean, Run& run);
+
+/// After improvement has moved the boundary: each triangle of the mesh that is no longer the one of `before` gets as
+/// its source that of the triangle of the `input` that is nearest now, found by the `tree` over it. `before`: the
+/// boundary as it was, in the same order.
+void renew_sources(TetMesh& mesh, const SurfaceMesh& before, const SurfaceMesh& input, const TriangleTree& tree);
+
+/// What was filled follows what became of its boundary and interfaces, whose vertices come first in the mesh; of
+/// a complex whose patches have one pair of sides each.
+void follow_boundary(const TetMesh& mesh, SurfaceMesh& filled);
 
 }  // namespace octafront

@@ -1,17 +1,15 @@
-#include "pipeline/stages/true_shape.h"
 
-#include <octafront/named_groups.h>
+
+#include "pipeline/stages/true_shape.h"
 
 #include "base/core/parallel.h"
 #include "base/geometry/measures.h"
 #include "improve/curved/curved.h"
 #include "improve/schedule/schedule.h"
-#include "pipeline/stages/found_shapes.h"
 #include "pipeline/stages/methods.h"
 
 #include <algorithm>
 #include <map>
-#include <set>
 #include <utility>
 
 #include <fmt/core.h>

@@ -1,15 +1,19 @@
 #pragma once
 
-// Where the true geometry of the input is known (CAD): the mesh on it, and its volumes against the true ones.
+#include <octafront/named_groups.h>
 
+#include "base/geometry/true_geometry.h"
 #include "pipeline/stages/stages.h"
 
 #include <cstdint>
 #include <set>
+#include <span>
 #include <string>
 #include <vector>
 
 namespace octafront {
+
+// Where the true geometry of the input is known (CAD): the mesh on it, and its volumes against the true ones.
 
 /// The options for a domain of CAD: lines are borders of patches, so that features by angle are those that a face has
 /// within itself; for sizes and layers parts and groups become their patches and regions.
@@ -43,5 +47,16 @@ MeshPatches patches_in_mesh(const SurfaceMesh& surface, const TrueGeometry* geom
 
 /// Enters the true volumes into the report, beside those of the mesh, curved as it is.
 void describe_true_volumes(const Filled& filled, const Domain& domain, Report& report);
+
+// Sets of a mesh at places that say what something is like, as far as the true geometry knows it.
+
+/// The places of groups (Options::groups) that nothing of the geometry, and no region, is called by.
+std::vector<std::string> places_without_names(const TrueGeometry& geometry, std::span<const std::string> groups,
+                                              const TetMesh& mesh);
+
+/// Adds what these places mean to a mesh whose patches are parts, as sets that are called like them, of faces or nodes.
+/// Returns those of edges, which are for a mesh with curves.
+std::vector<PlacedSet> add_found_shapes(const TrueGeometry& geometry, std::span<const std::string> places,
+                                        TetMesh& mesh);
 
 }  // namespace octafront

@@ -1,10 +1,9 @@
-#include "pipeline/stages/volume_tolerance.h"
-
 #include <octafront/error.h>
 
 #include "base/mesh/complex.h"
 #include "improve/curved/curved.h"
 #include "pipeline/stages/kept_shape.h"
+#include "pipeline/stages/kept_volumes.h"
 #include "pipeline/stages/layered.h"
 #include "pipeline/stages/methods.h"
 

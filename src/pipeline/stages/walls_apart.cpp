@@ -1,14 +1,10 @@
-#include "pipeline/stages/walls_apart.h"
-
 #include "adapt/schedule/rim_metric.h"
 #include "base/core/wording.h"
 #include "base/geometry/self_intersection.h"
 #include "base/geometry/triangle_tree.h"
+#include "pipeline/stages/adapting.h"
 
 #include <algorithm>
-#include <cstdint>
-#include <string>
-#include <vector>
 
 #include <fmt/core.h>
 

@@ -1,6 +1,5 @@
-#include "report/picture/camera.h"
-
 #include "base/core/parallel.h"
+#include "report/picture/raster.h"
 
 #include <algorithm>
 #include <cmath>

@@ -1,6 +1,5 @@
-#include "report/picture/canvas.h"
 
-#include "report/picture/stroke_font.h"
+#include "report/picture/canvas.h"
 
 #include <algorithm>
 #include <cmath>

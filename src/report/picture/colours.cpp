@@ -1,3 +1,4 @@
+
 #include "report/picture/colours.h"
 
 #include <fmt/core.h>

@@ -1,7 +1,7 @@
 #pragma once
 
-#include "report/picture/camera.h"
 #include "report/picture/canvas.h"
+#include "report/picture/raster.h"
 #include "report/picture/scene.h"
 
 #include <cstdint>

@@ -317,17 +317,10 @@ class MeshScene {
 
   void make_legend() {
     Legend& legend = scene_.legend;
-    for (std::uint32_t k = 0; k < options_.highlight.size(); ++k)
-      legend.swatches.emplace_back(options_.highlight[k], colour_of_mark(k));
+    list_marks(legend, options_.highlight);
     if (color_ == Color::kQuality) return quality_legend(legend, beta_counts());
     if (color_ == Color::kSize) return size_legend(legend, sizes_, options_.unit);
-    if (color_ == Color::kPlain) return;
-    std::vector<char> is_there(scene_.part_names.size(), 0);
-    for (const SceneFace& face : scene_.faces)
-      if (face.part != kNone && face.part < is_there.size()) is_there[face.part] = 1;
-    legend.title = color_ == Color::kRegion ? "regions" : "patches";
-    for (std::uint32_t p = 0; p < is_there.size(); ++p)
-      if (is_there[p]) legend.swatches.emplace_back(scene_.part_names[p], colour_of_part(p));
+    if (color_ != Color::kPlain) list_parts(scene_, color_);
   }
   std::vector<std::uint64_t> beta_counts() const {
     std::vector<double> beta(mesh_.tets.size());

@@ -5,6 +5,7 @@
 
 #include "base/core/thread_limit.h"
 #include "base/core/wording.h"
+#include "report/picture/canvas.h"
 #include "report/picture/furniture.h"
 #include "report/picture/raster.h"
 

@@ -1,3 +1,4 @@
+
 #include "report/picture/scales.h"
 
 #include "base/core/elementary.h"
@@ -83,6 +84,19 @@ void size_legend(Legend& legend, const SizeRange& sizes, const std::string& unit
     legend.ticks.emplace_back(share,
                               fmt::format("{:.3g}", sizes.least * elementary::pow(sizes.most / sizes.least, share)));
   }
+}
+
+void list_marks(Legend& legend, std::span<const std::string> marks) {
+  for (std::uint32_t k = 0; k < marks.size(); ++k) legend.swatches.emplace_back(marks[k], colour_of_mark(k));
+}
+
+void list_parts(Scene& scene, PictureOptions::Color color) {
+  std::vector<char> is_there(scene.part_names.size(), 0);
+  for (const SceneFace& face : scene.faces)
+    if (face.part != kNone && face.part < is_there.size()) is_there[face.part] = 1;
+  scene.legend.title = color == PictureOptions::Color::kRegion ? "regions" : "patches";
+  for (std::uint32_t p = 0; p < is_there.size(); ++p)
+    if (is_there[p]) scene.legend.swatches.emplace_back(scene.part_names[p], colour_of_part(p));
 }
 
 std::string in_groups(std::uint64_t number) {

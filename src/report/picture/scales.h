@@ -31,6 +31,10 @@ std::vector<std::uint64_t> counts_in_parts(std::span<const double> values);
 void quality_legend(Legend& legend, std::vector<std::uint64_t> counts);
 void size_legend(Legend& legend, const SizeRange& sizes, const std::string& unit);
 
+/// The marks, and the regions or patches that the faces of a scene are of, with their colours.
+void list_marks(Legend& legend, std::span<const std::string> marks);
+void list_parts(Scene& scene, PictureOptions::Color color);
+
 /// "12,345,678"
 std::string in_groups(std::uint64_t number);
 

@@ -5,7 +5,6 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <numeric>
 #include <utility>
 
 namespace octafront {
@@ -75,19 +74,6 @@ void find_features(Scene& scene, const std::vector<Triangle>& corners, const std
     if (j - i == 2 ? !is_feature(edges[i], edges[i + 1]) : !is_outer[edges[i].triangle]) continue;
     for (std::size_t k = i; k < j; ++k) make_strong(edges[k]);
   }
-}
-
-std::vector<VertexIndex> same_places(const std::vector<Vec3>& points) {
-  std::vector<VertexIndex> order(points.size()), first(points.size());
-  std::iota(order.begin(), order.end(), 0);
-  const auto key = [&](VertexIndex v) { return std::array{points[v].x, points[v].y, points[v].z}; };
-  parallel_sort(order, [&](VertexIndex a, VertexIndex b) {
-    const auto [p, q] = std::pair{key(a), key(b)};
-    return p < q || (!(q < p) && a < b);
-  });
-  for (std::size_t i = 0; i < order.size(); ++i)
-    first[order[i]] = i > 0 && points[order[i]] == points[order[i - 1]] ? first[order[i - 1]] : order[i];
-  return first;
 }
 
 void smooth_normals(Scene& scene, const std::vector<Triangle>& corners) {

@@ -75,9 +75,6 @@ class CutPlane {
 void find_features(Scene& scene, const std::vector<Triangle>& corners, const std::vector<std::uint32_t>& parts,
                    const std::vector<char>& is_outer);
 
-/// Per point the first one at the same place: triangles of a soup share none.
-std::vector<VertexIndex> same_places(const std::vector<Vec3>& points);
-
 /// Normals of the corners: of all triangles at a vertex that meet the corner's own at less than 40 degrees.
 void smooth_normals(Scene& scene, const std::vector<Triangle>& corners);
 

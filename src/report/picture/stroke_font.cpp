@@ -1,10 +1,8 @@
-#include "report/picture/stroke_font.h"
+#include "report/picture/canvas.h"
 
 #include <algorithm>
 #include <array>
-#include <cstdint>
 #include <map>
-#include <string>
 
 namespace octafront::stroke_font {
 

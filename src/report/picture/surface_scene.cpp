@@ -2,6 +2,7 @@
 #include <octafront/run_context.h>
 
 #include "base/core/wording.h"
+#include "base/geometry/same_place.h"
 #include "base/mesh/edge_table.h"
 #include "base/places/places.h"
 #include "report/picture/scales.h"
@@ -29,7 +30,7 @@ class SurfaceScene {
   }
 
   Scene made() {
-    vertex_ = same_places(surface_.points);
+    vertex_ = first_at_place(surface_.points);
     scene_.marks = options_.highlight.size();
     for (std::size_t t = 0; t < surface_.triangles.size(); ++t)
       if (is_shown(t)) add(t);
@@ -130,8 +131,7 @@ class SurfaceScene {
   }
   void make_legend() {
     Legend& legend = scene_.legend;
-    for (std::uint32_t k = 0; k < options_.highlight.size(); ++k)
-      legend.swatches.emplace_back(options_.highlight[k], colour_of_mark(k));
+    list_marks(legend, options_.highlight);
     if (color_ == Color::kQuality) {
       std::vector<double> ratio;
       for (const Triangle& v : surface_.triangles)
@@ -139,15 +139,7 @@ class SurfaceScene {
       quality_legend(legend, counts_in_parts(ratio));
     }
     if (color_ == Color::kSize) size_legend(legend, sizes_, options_.unit);
-    if (color_ == Color::kRegion || color_ == Color::kPatch) list_parts(legend);
-  }
-  void list_parts(Legend& legend) const {
-    std::vector<char> is_there(scene_.part_names.size(), 0);
-    for (const SceneFace& face : scene_.faces)
-      if (face.part != kNone) is_there[face.part] = 1;
-    legend.title = color_ == Color::kRegion ? "regions" : "patches";
-    for (std::uint32_t p = 0; p < is_there.size(); ++p)
-      if (is_there[p]) legend.swatches.emplace_back(scene_.part_names[p], colour_of_part(p));
+    if (color_ == Color::kRegion || color_ == Color::kPatch) list_parts(scene_, color_);
   }
 
   const SurfaceMesh& surface_;

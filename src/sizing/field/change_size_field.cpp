@@ -1,7 +1,6 @@
 #include "sizing/field/change_size_field.h"
 
 #include "sizing/field/gradation.h"
-#include "sizing/field/grid_caps.h"
 #include "sizing/field/octree_corners.h"
 
 #include <algorithm>

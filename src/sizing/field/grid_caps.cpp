@@ -1,8 +1,6 @@
-#include "sizing/field/grid_caps.h"
 
 #include "sizing/field/gradation.h"
 
-#include <algorithm>
 #include <limits>
 #include <numeric>
 

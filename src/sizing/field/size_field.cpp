@@ -1,6 +1,6 @@
 #include <octafront/size_field.h>
 
-#include "sizing/field/size_function.h"
+#include "sizing/field/octree_field.h"
 
 #include <algorithm>
 

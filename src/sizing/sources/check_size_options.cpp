@@ -1,15 +1,13 @@
-#include "sizing/sources/check_size_options.h"
-
 #include <octafront/error.h>
 #include <octafront/option_table.h>
 
 #include "base/core/index_range.h"
 #include "base/core/wording.h"
 #include "sizing/field/octree_field.h"
-#include "sizing/sources/sizes_in_space.h"
+#include "sizing/sources/make_size_field.h"
+#include "sizing/sources/sources.h"
 
 #include <algorithm>
-#include <cmath>
 #include <string>
 
 #include <fmt/core.h>

@@ -1,8 +1,7 @@
-#include "sizing/sources/feature_sizes.h"
-
 #include <octafront/surface_mesh.h>
 
 #include "base/core/groups.h"
+#include "sizing/sources/sources.h"
 
 #include <algorithm>
 

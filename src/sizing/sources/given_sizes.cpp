@@ -1,10 +1,9 @@
-#include "sizing/sources/given_sizes.h"
-
 #include <octafront/surface_mesh.h>
 
 #include "base/geometry/measures.h"
 #include "base/geometry/triangle_tree.h"
 #include "sizing/sources/model_extent.h"
+#include "sizing/sources/sources.h"
 
 #include <algorithm>
 #include <memory>

@@ -1,19 +1,14 @@
 // Sizes for a surface whose triangles stay as they are.
 
-#include "sizing/sources/kept_surface.h"
-
 #include "base/core/elementary.h"
 #include "base/geometry/measures.h"
-#include "sizing/sources/check_size_options.h"
 #include "sizing/sources/curvature.h"
-#include "sizing/sources/given_sizes.h"
+#include "sizing/sources/make_size_field.h"
 #include "sizing/sources/model_extent.h"
-#include "sizing/sources/named_sizes.h"
-#include "sizing/sources/sizes_in_space.h"
 #include "sizing/sources/source_grid.h"
+#include "sizing/sources/sources.h"
 
 #include <algorithm>
-#include <cmath>
 #include <limits>
 #include <string>
 

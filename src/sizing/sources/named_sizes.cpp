@@ -1,5 +1,3 @@
-#include "sizing/sources/named_sizes.h"
-
 #include <octafront/error.h>
 #include <octafront/surface_mesh.h>
 
@@ -9,11 +7,11 @@
 #include "base/mesh/complex.h"
 #include "base/places/places.h"
 #include "sizing/field/affordable.h"
+#include "sizing/sources/sources.h"
 
 #include <algorithm>
 #include <cmath>
 #include <limits>
-#include <string>
 #include <utility>
 
 #include <fmt/core.h>

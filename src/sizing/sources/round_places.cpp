@@ -1,10 +1,9 @@
-#include "sizing/sources/round_places.h"
-
 #include <octafront/surface_mesh.h>
 
 #include "base/core/parallel.h"
 #include "base/geometry/measures.h"
 #include "sizing/field/thin_walls.h"
+#include "sizing/sources/sources.h"
 
 #include <algorithm>
 #include <cstdint>

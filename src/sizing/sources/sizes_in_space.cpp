@@ -1,5 +1,3 @@
-#include "sizing/sources/sizes_in_space.h"
-
 #include <octafront/error.h>
 #include <octafront/surface_mesh.h>
 
@@ -11,6 +9,7 @@
 #include "sizing/field/affordable.h"
 #include "sizing/field/mesh_sizes.h"
 #include "sizing/field/octree.h"
+#include "sizing/sources/sources.h"
 
 #include <algorithm>
 #include <cmath>

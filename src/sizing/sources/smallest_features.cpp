@@ -4,8 +4,8 @@
 #include "base/core/thread_limit.h"
 #include "base/geometry/measures.h"
 #include "base/mesh/known_surface.h"
-#include "sizing/sources/feature_sizes.h"
 #include "sizing/sources/gaps.h"
+#include "sizing/sources/sources.h"
 
 #include <algorithm>
 #include <cmath>

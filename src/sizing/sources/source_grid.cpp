@@ -2,7 +2,7 @@
 
 #include "base/core/parallel.h"
 #include "sizing/field/affordable.h"
-#include "sizing/field/grid_caps.h"
+#include "sizing/field/gradation.h"
 
 #include <algorithm>
 #include <utility>

@@ -1,10 +1,9 @@
-#include "sizing/sources/source_shares.h"
-
 #include <octafront/surface_mesh.h>
 
 #include "base/core/parallel.h"
 #include "base/geometry/measures.h"
 #include "sizing/field/affordable.h"
+#include "sizing/sources/wanted_sizes.h"
 
 #include <algorithm>
 #include <cmath>

@@ -4,13 +4,9 @@
 #include "base/geometry/measures.h"
 #include "sizing/field/affordable.h"
 #include "sizing/sources/curvature.h"
-#include "sizing/sources/feature_sizes.h"
 #include "sizing/sources/gaps.h"
-#include "sizing/sources/given_sizes.h"
 #include "sizing/sources/model_extent.h"
-#include "sizing/sources/named_sizes.h"
-#include "sizing/sources/round_places.h"
-#include "sizing/sources/sizes_in_space.h"
+#include "sizing/sources/sources.h"
 
 #include <algorithm>
 #include <cmath>

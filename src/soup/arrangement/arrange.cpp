@@ -7,9 +7,9 @@
 #include "base/core/renumber.h"
 #include "base/core/wording.h"
 #include "base/geometry/predicates.h"
+#include "base/geometry/same_place.h"
 #include "base/geometry/self_intersection.h"
-#include "soup/arrangement/divide.h"
-#include "soup/arrangement/snap.h"
+#include "soup/arrangement/arranging.h"
 
 #include <algorithm>
 #include <array>
@@ -36,25 +36,9 @@ constexpr double kReach = 1e-13, kGrowth = 2;
 /// What does not settle must not grow without end either.
 constexpr std::size_t kMostGrowth = 8, kFewPairs = 100;
 
-bool lexicographic(Vec3 a, Vec3 b) {
-  return a.x != b.x ? a.x < b.x : a.y != b.y ? a.y < b.y : a.z < b.z;
-}
-
-/// The first of equal points (0 equals -0), for each point.
-std::vector<std::uint32_t> first_of_equal(const std::vector<Vec3>& points) {
-  std::vector<std::uint32_t> order(points.size()), first(points.size());
-  std::iota(order.begin(), order.end(), 0);
-  std::sort(order.begin(), order.end(), [&](std::uint32_t a, std::uint32_t b) {
-    return lexicographic(points[a], points[b]) || (points[a] == points[b] && a < b);
-  });
-  for (std::size_t i = 0; i < order.size(); ++i)
-    first[order[i]] = i > 0 && points[order[i]] == points[order[i - 1]] ? first[order[i - 1]] : order[i];
-  return first;
-}
-
 /// Merges equal points, drops triangles without area; returns how many these were.
 std::uint64_t tidy(Soup& soup) {
-  const std::vector<std::uint32_t> first = first_of_equal(soup.points);
+  const std::vector<std::uint32_t> first = first_at_place(soup.points);
   std::uint64_t flat = 0;
   std::size_t kept = 0;
   for (std::size_t i = 0; i < soup.triangles.size(); ++i) {

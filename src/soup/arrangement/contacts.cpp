@@ -1,8 +1,7 @@
-#include "soup/arrangement/contacts.h"
-
 #include "base/core/parallel.h"
 #include "base/geometry/predicates.h"
 #include "base/geometry/triangle_intersection.h"
+#include "soup/arrangement/arranging.h"
 
 #include <algorithm>
 #include <map>

@@ -1,14 +1,12 @@
-#include "soup/arrangement/divide.h"
-
 #include "base/core/disjoint_sets.h"
 #include "base/core/groups.h"
 #include "base/core/parallel.h"
 #include "base/geometry/measures.h"
 #include "base/geometry/plane_mesh.h"
 #include "base/geometry/predicates.h"
+#include "soup/arrangement/arranging.h"
 
 #include <algorithm>
-#include <array>
 #include <cmath>
 
 namespace octafront::arrangement {

@@ -1,12 +1,10 @@
-#include "soup/arrangement/snap.h"
-
 #include "base/geometry/measures.h"
 #include "base/geometry/triangle_tree.h"
+#include "soup/arrangement/arranging.h"
 
 #include <algorithm>
 #include <cmath>
 #include <map>
-#include <utility>
 
 namespace octafront::arrangement {
 namespace {

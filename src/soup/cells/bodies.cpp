@@ -9,10 +9,8 @@
 #include "base/geometry/measures.h"
 #include "base/geometry/self_intersection.h"
 #include "base/mesh/complex.h"
-#include "soup/cells/close_gaps.h"
-#include "soup/cells/dissolve.h"
+#include "soup/cells/cell_steps.h"
 #include "soup/cells/labelled.h"
-#include "soup/cells/wall_shape.h"
 
 #include <algorithm>
 #include <cmath>

@@ -1,34 +1,20 @@
 #include <octafront/complex.h>
 
 #include "base/core/disjoint_sets.h"
+#include "base/geometry/same_place.h"
 
 #include <algorithm>
 #include <array>
 #include <map>
-#include <numeric>
-#include <tuple>
 
 #include <fmt/core.h>
 
 namespace octafront {
 namespace {
 
-/// Per vertex the first one at its place.
-std::vector<VertexIndex> first_of_place(const std::vector<Vec3>& points) {
-  std::vector<VertexIndex> order(points.size());
-  std::iota(order.begin(), order.end(), 0);
-  const auto key = [&](VertexIndex v) { return std::tuple(points[v].x, points[v].y, points[v].z); };
-  std::sort(order.begin(), order.end(),
-            [&](VertexIndex a, VertexIndex b) { return std::pair(key(a), a) < std::pair(key(b), b); });
-  std::vector<VertexIndex> first(points.size());
-  for (std::size_t i = 0; i < order.size(); ++i)
-    first[order[i]] = i > 0 && key(order[i]) == key(order[i - 1]) ? first[order[i - 1]] : order[i];
-  return first;
-}
-
 class PartsByName {
  public:
-  explicit PartsByName(const SurfaceMesh& surface) : surface_(surface), first_(first_of_place(surface.points)) {
+  explicit PartsByName(const SurfaceMesh& surface) : surface_(surface), first_(first_at_place(surface.points)) {
     for (std::size_t t = 0; t < surface.triangles.size(); ++t) faces_of_[named(surface.patch_of(t))].push_back(t);
     part_of_.assign(surface.triangles.size(), kNone);
   }

@@ -7,7 +7,7 @@
 #include "base/mesh/complex.h"
 #include "base/mesh/surface_topology.h"
 #include "soup/cells/bodies.h"
-#include "soup/cells/filled_cells.h"
+#include "soup/cells/cell_steps.h"
 #include "soup/cells/labelled.h"
 #include "soup/tidy/steps.h"
 

@@ -1,17 +1,12 @@
-#include "soup/cells/close_gaps.h"
 
-#include <octafront/surface_mesh.h>
 
 #include "base/geometry/measures.h"
 #include "base/geometry/plane_mesh.h"
 #include "base/geometry/predicates.h"
 #include "base/geometry/triangle_tree.h"
 #include "base/mesh/vertices_by_place.h"
-#include "soup/cells/shared_walls.h"
+#include "soup/cells/cell_steps.h"
 
-#include <algorithm>
-#include <array>
-#include <cmath>
 #include <functional>
 #include <map>
 #include <numeric>

@@ -1,11 +1,9 @@
-#include "soup/cells/dissolve.h"
-
 #include "base/core/renumber.h"
 #include "base/geometry/measures.h"
 #include "base/geometry/predicates.h"
 #include "base/geometry/self_intersection.h"
+#include "soup/cells/cell_steps.h"
 
-#include <algorithm>
 #include <optional>
 #include <set>
 #include <tuple>

@@ -1,13 +1,10 @@
-#include "soup/cells/filled_cells.h"
-
 #include "base/core/groups.h"
+#include "soup/cells/cell_steps.h"
 #include "soup/tidy/steps.h"
 
-#include <algorithm>
 #include <cstdlib>
 #include <optional>
 #include <queue>
-#include <span>
 #include <utility>
 
 namespace octafront::cells {

@@ -1,14 +1,8 @@
-#include "soup/cells/shared_walls.h"
-
-#include <octafront/surface_mesh.h>
-
 #include "base/core/disjoint_sets.h"
 #include "base/geometry/measures.h"
 #include "base/geometry/triangle_tree.h"
+#include "soup/cells/cell_steps.h"
 
-#include <algorithm>
-#include <array>
-#include <cmath>
 #include <map>
 #include <set>
 #include <utility>

@@ -5,7 +5,7 @@
 #include "base/core/utf8.h"
 #include "base/core/wording.h"
 #include "soup/cells/bodies.h"
-#include "soup/cells/close_gaps.h"
+#include "soup/cells/cell_steps.h"
 #include "soup/cells/labelled.h"
 
 #include <algorithm>

@@ -4,8 +4,6 @@
 #include "base/geometry/predicates.h"
 #include "base/mesh/edge_table.h"
 
-#include <algorithm>
-
 namespace octafront::cells {
 namespace {
 

@@ -1,11 +1,7 @@
-#include "soup/cells/wall_shape.h"
-
 #include "base/geometry/measures.h"
 #include "base/geometry/triangle_tree.h"
 #include "base/mesh/edge_table.h"
-
-#include <algorithm>
-#include <vector>
+#include "soup/cells/cell_steps.h"
 
 namespace octafront::cells {
 

@@ -1,10 +1,8 @@
-#include "soup/mend/based_cap.h"
-
 #include "base/core/elementary.h"
+#include "soup/mend/caps.h"
 #include "soup/mend/flat_rim.h"
 
 #include <algorithm>
-#include <array>
 #include <cmath>
 
 namespace octafront::mend {
@@ -12,7 +10,7 @@ namespace {
 
 /// Of the rim's diameter: what stands higher over it is not a hill but something else.
 constexpr double kMostHill = 0.5;
-/// Outlines of more corners have no best triangulation (cap.h), and are simplified more.
+/// Outlines of more corners have no best triangulation (caps.h), and are simplified more.
 constexpr std::size_t kMostCorners = 256;
 /// How often the reach of the simplification is doubled.
 constexpr int kSimplifications = 3;

@@ -1,11 +1,10 @@
-#include "soup/mend/crumples.h"
-
 #include "base/core/disjoint_sets.h"
 #include "base/geometry/hausdorff.h"
 #include "base/geometry/measures.h"
 #include "base/geometry/self_intersection.h"
 #include "base/geometry/triangle_tree.h"
-#include "soup/mend/cap.h"
+#include "soup/mend/caps.h"
+#include "soup/mend/mend_steps.h"
 
 #include <algorithm>
 #include <array>

@@ -1,13 +1,11 @@
-#include "soup/mend/dust.h"
-
 #include "base/core/renumber.h"
 #include "base/geometry/measures.h"
 #include "base/geometry/predicates.h"
 #include "base/mesh/edge_table.h"
+#include "soup/mend/mend_steps.h"
 
 #include <algorithm>
 #include <array>
-#include <vector>
 
 namespace octafront::mend {
 namespace {

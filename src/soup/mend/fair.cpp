@@ -1,7 +1,6 @@
-#include "soup/mend/fair.h"
 
 #include "base/geometry/measures.h"
-#include "soup/mend/loops.h"
+#include "soup/mend/caps.h"
 
 #include <algorithm>
 #include <numbers>

@@ -1,14 +1,8 @@
-#include "soup/mend/holes.h"
-
 #include "base/core/disjoint_sets.h"
 #include "base/core/parallel.h"
 #include "base/geometry/measures.h"
-#include "soup/mend/based_cap.h"
-#include "soup/mend/cap.h"
-#include "soup/mend/fair.h"
-#include "soup/mend/fin_strips.h"
-#include "soup/mend/loops.h"
-#include "soup/mend/shared_lids.h"
+#include "soup/mend/caps.h"
+#include "soup/mend/mend_steps.h"
 
 #include <algorithm>
 #include <cmath>

@@ -1,12 +1,9 @@
-#include "soup/mend/label.h"
-
-#include <octafront/surface_mesh.h>
-
 #include "base/core/disjoint_sets.h"
 #include "base/core/parallel.h"
 #include "base/geometry/measures.h"
 #include "base/geometry/sight_line.h"
 #include "base/geometry/winding_number.h"
+#include "soup/mend/mend_steps.h"
 #include "soup/mend/min_cut.h"
 
 #include <algorithm>

@@ -1,5 +1,3 @@
-#include "soup/mend/lattice_skin.h"
-
 #include "base/core/disjoint_sets.h"
 #include "base/core/renumber.h"
 #include "base/core/stage.h"
@@ -10,6 +8,7 @@
 #include "fill/lattice/lattice_octree.h"
 #include "fill/lattice/manifold.h"
 #include "fill/lattice/stuff.h"
+#include "soup/mend/mend_steps.h"
 
 #include <algorithm>
 #include <cmath>

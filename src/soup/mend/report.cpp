@@ -1,8 +1,7 @@
-#include "soup/mend/report.h"
-
 #include "base/core/disjoint_sets.h"
 #include "base/core/wording.h"
 #include "base/geometry/measures.h"
+#include "soup/mend/mend_steps.h"
 
 #include <algorithm>
 #include <map>

@@ -1,5 +1,3 @@
-#include "soup/mend/separate.h"
-
 #include "base/core/disjoint_sets.h"
 #include "base/core/random.h"
 #include "base/geometry/measures.h"
@@ -9,7 +7,8 @@
 #include "base/mesh/edge_table.h"
 #include "base/mesh/surface_topology.h"
 #include "soup/cells/side_graph.h"
-#include "soup/mend/cap.h"
+#include "soup/mend/caps.h"
+#include "soup/mend/mend_steps.h"
 
 #include <algorithm>
 #include <map>

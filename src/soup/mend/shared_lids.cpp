@@ -1,14 +1,12 @@
-#include "soup/mend/shared_lids.h"
-
 #include "base/geometry/measures.h"
 #include "base/geometry/plane_mesh.h"
+#include "soup/mend/caps.h"
 #include "soup/mend/flat_rim.h"
 
 #include <algorithm>
 #include <map>
 #include <optional>
 #include <set>
-#include <utility>
 
 namespace octafront::mend {
 namespace {

@@ -1,8 +1,7 @@
-#include "soup/mend/weld.h"
-
 #include "base/core/disjoint_sets.h"
 #include "base/geometry/measures.h"
 #include "base/geometry/triangle_tree.h"
+#include "soup/mend/mend_steps.h"
 
 #include <algorithm>
 #include <map>

@@ -62,18 +62,16 @@ class FlatFaces {
   }
 
   /// Enters or removes face f at its edges between corners of flat faces; no other edge is ever looked up.
-  void link(std::uint32_t f) {
+  void link(std::uint32_t f, bool enters = true) {
     for (int i = 0; i < 3; ++i) {
       const VertexIndex a = mesh_.triangles[f][i], b = mesh_.triangles[f][(i + 1) % 3];
-      if (near_[a] && near_[b]) faces_at_[key(a, b)].push_back(f);
+      if (!near_[a] || !near_[b]) continue;
+      std::vector<std::uint32_t>& faces = faces_at_[key(a, b)];
+      if (enters) faces.push_back(f);
+      if (!enters) std::erase(faces, f);
     }
   }
-  void unlink(std::uint32_t f) {
-    for (int i = 0; i < 3; ++i) {
-      const VertexIndex a = mesh_.triangles[f][i], b = mesh_.triangles[f][(i + 1) % 3];
-      if (near_[a] && near_[b]) std::erase(faces_at_[key(a, b)], f);
-    }
-  }
+  void unlink(std::uint32_t f) { link(f, false); }
 
   void enqueue(std::uint32_t f) {
     const auto [p, r, q] = along_line(f);

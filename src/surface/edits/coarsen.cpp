@@ -1,7 +1,6 @@
 #include "surface/edits/coarsen.h"
 
 #include "base/core/parallel.h"
-#include "surface/edits/star_collapse.h"
 #include "surface/edits/surface_blocks.h"
 
 #include <algorithm>
@@ -9,6 +8,63 @@
 #include <utility>
 
 namespace octafront::surface {
+
+void StarCollapse::gather(VertexIndex v) {
+  ring_.clear();
+  mesh_.for_each_outgoing(v, [&](HalfEdge h) { ring_.push_back(h); });
+  if (mesh_.on_curve(v)) {
+    const auto first = std::find_if(ring_.begin(), ring_.end(), [&](HalfEdge h) { return mesh_.is_feature[h]; });
+    if (first != ring_.end()) std::rotate(ring_.begin(), first, ring_.end());
+  }
+  stars_.resize(ring_.size());
+  for (std::size_t i = 0; i < ring_.size();) {
+    std::size_t j = i;
+    Vec3 sum;
+    do {
+      sum += mesh_.area_vector(ring_[j++] / 3);
+    } while (j < ring_.size() && !mesh_.is_feature[ring_[j]]);
+    for (; i < j; ++i) stars_[i] = sum;
+  }
+}
+
+double StarCollapse::quality_now() const {
+  double worst = 1;
+  for (const HalfEdge h : ring_) {
+    if (mesh_.is_back(h / 3)) continue;
+    worst = std::min(
+        worst, squared_quality(mesh_.points[mesh_.start[h]], mesh_.points[mesh_.end(h)], mesh_.points[mesh_.apex(h)]));
+  }
+  return worst;
+}
+
+double StarCollapse::quality_after(std::size_t towards, const TurnLimits& limits, double least) const {
+  const VertexIndex w = mesh_.end(ring_[towards]);
+  const Vec3 pw = mesh_.points[w];
+  double worst = 1;
+  for (std::size_t i = 0; i < ring_.size(); ++i) {
+    const VertexIndex p = mesh_.end(ring_[i]), q = mesh_.apex(ring_[i]);
+    if (p == w || q == w || mesh_.is_back(ring_[i] / 3)) continue;
+    const Vec3 pp = mesh_.points[p], pq = mesh_.points[q];
+    const Vec3 area_vector = cross(pp - pw, pq - pw);
+    worst = std::min(worst, squared_quality(pw, pp, pq));
+    if (!(worst > least)) return 0;
+    if (!turns_little(area_vector, stars_[i], limits.star)) return 0;
+    if (!faces_outward(mesh_, area_vector, {w, p, q}, limits.surface)) return 0;
+  }
+  return worst;
+}
+
+double StarCollapse::longest_after(std::size_t towards) const {
+  const VertexIndex w = mesh_.end(ring_[towards]);
+  double longest = 0;
+  for (const HalfEdge h : ring_) {
+    const VertexIndex p = mesh_.end(h);
+    if (p == w || mesh_.is_behind(h)) continue;
+    const double size = 0.5 * (mesh_.size[w] + mesh_.size[p]);
+    longest = std::max(longest, distance(mesh_.points[w], mesh_.points[p]) / size);
+  }
+  return longest;
+}
 
 namespace {
 
@@ -33,7 +89,7 @@ class Coarsener {
         counts_(counts),
         merged_into_(mesh.points.size()),
         blocks_(mesh) {
-    left_ = collect(mesh.points.size(), [&](VertexIndex v) {
+    left_ = parallel_select(mesh.points.size(), [&](VertexIndex v) {
       const bool is_input = mesh.kind[v] == VertexKind::kRemovable || mesh.kind[v] == VertexKind::kRemovableCurve;
       return is_input && mesh.outgoing[v] != kNone && !mesh.is_sewn(v);
     });
@@ -53,17 +109,6 @@ class Coarsener {
   }
 
  private:
-  /// The numbers below n that the test is true for.
-  template <class Test>
-  static std::vector<std::uint32_t> collect(std::size_t n, const Test& test) {
-    constexpr std::size_t kRange = 16384;
-    return parallel_collect<std::uint32_t>(n, kRange,
-                                           [&](std::size_t begin, std::size_t end, std::vector<std::uint32_t>& found) {
-                                             for (auto i = static_cast<std::uint32_t>(begin); i < end; ++i)
-                                               if (test(i)) found.push_back(i);
-                                           });
-  }
-
   /// What could not be collapsed away is a vertex like others from here on.
   void adopt_left() {
     for (const VertexIndex v : left_) {
@@ -77,7 +122,7 @@ class Coarsener {
 
   void flip_all(const TurnLimits& limits) {
     const auto is_first = [&](HalfEdge h) { return h < mesh_.twin[h]; };
-    counts_.flips += make_delaunay(mesh_, blocks_, collect(mesh_.start.size(), is_first), limits);
+    counts_.flips += make_delaunay(mesh_, blocks_, parallel_select(mesh_.start.size(), is_first), limits);
   }
 
   void pass(const PassLimits& limits) {

@@ -1,7 +1,6 @@
-#include "surface/edits/crossings.h"
-
 #include "base/geometry/predicates.h"
 #include "base/geometry/self_intersection.h"
+#include "surface/edits/working_mesh.h"
 
 #include <algorithm>
 

@@ -19,11 +19,7 @@ bool sweep(WorkingMesh& mesh, const Count& count, const IsWanted& is_wanted, con
            const Work& work) {
   constexpr std::size_t kRange = 8192;
   const std::size_t known = count();
-  const std::vector<std::uint32_t> wanted = parallel_collect<std::uint32_t>(
-      known, kRange, [&](std::size_t begin, std::size_t end, std::vector<std::uint32_t>& found) {
-        for (auto i = static_cast<std::uint32_t>(begin); i < end; ++i)
-          if (is_wanted(i)) found.push_back(i);
-      });
+  const std::vector<std::uint32_t> wanted = parallel_select(known, is_wanted, kRange);
   std::size_t next = 0;
   for (; next < wanted.size(); ++next) {
     if (next == 0) mesh.clear_marks(WorkingMesh::kForSweep);

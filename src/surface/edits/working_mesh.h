@@ -1,13 +1,19 @@
 #pragma once
 
-// surface/edits: the surface while it is changed, and single sound edits of it: edges that turn and collapse
-// (star_collapse, coarsen), of lines too (line_edits), guarded (local_guards), in blocks of parallel work (blocks). A
-// closed manifold exists at every moment.
+#include <octafront/surface_mesh.h>
 
 #include "base/core/shared_value.h"
 #include "surface/edits/walk.h"
 
+#include <array>
+#include <cstdint>
+#include <vector>
+
 namespace octafront::surface {
+
+// surface/edits: the surface while it is changed, and single sound edits of it: edges that turn and collapse
+// (star_collapse, coarsen), of lines too (line_edits), guarded (local_guards), in blocks of parallel work (blocks). A
+// closed manifold exists at every moment.
 
 /// What a vertex of the working mesh is, and so what may happen to it.
 enum class VertexKind : std::uint8_t {
@@ -117,5 +123,9 @@ struct WorkingMesh : HalfEdgeMesh {
   /// The same in the stars of these vertices.
   std::optional<std::string> first_inconsistency(std::span<const VertexIndex> touched) const;
 };
+
+/// Pairs of triangles that meet in more than what they share, exactly; the smaller id first, sorted. Degenerate
+/// triangles pair with themselves.
+std::vector<std::array<std::uint32_t, 2>> find_crossings(const SurfaceMesh& surface);
 
 }  // namespace octafront::surface

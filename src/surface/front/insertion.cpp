@@ -1,7 +1,6 @@
-#include "surface/front/insertion.h"
-
 #include "base/geometry/predicates.h"
 #include "surface/edits/local_guards.h"
+#include "surface/front/front_steps.h"
 
 #include <algorithm>
 

@@ -1,8 +1,7 @@
-#include "surface/front/lengths.h"
-
+#include "surface/edits/coarsen.h"
 #include "surface/edits/local_guards.h"
-#include "surface/edits/star_collapse.h"
 #include "surface/edits/sweep.h"
+#include "surface/front/front_steps.h"
 
 #include <algorithm>
 #include <optional>

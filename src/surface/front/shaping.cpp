@@ -1,11 +1,9 @@
-#include "surface/front/shaping.h"
 
 #include "base/core/elementary.h"
 #include "base/core/parallel.h"
 #include "surface/edits/local_guards.h"
 #include "surface/edits/surface_blocks.h"
-#include "surface/front/lengths.h"
-#include "surface/lines/curve_points.h"
+#include "surface/front/front_steps.h"
 
 #include <algorithm>
 #include <atomic>
@@ -27,8 +25,6 @@ constexpr double kValenceFlipQuality = 0.25;
 /// in large meshes .0002 for a sixth of the time.
 constexpr int kImproveRounds = 3, kRoundsOfMany = 2;
 constexpr std::size_t kMany = 100000;
-/// Vertices or half-edges that one thread looks through at a time.
-constexpr std::size_t kRange = 16384;
 
 /// Moves vertices to where the triangles around them are better. Each thread has its own.
 class VertexSmoother {
@@ -152,12 +148,8 @@ class SurfaceImprover {
  private:
   template <class Test>
   std::vector<HalfEdge> edges_that(const Test& test) const {
-    return parallel_collect<HalfEdge>(mesh_.start.size(), kRange,
-                                      [&](std::size_t begin, std::size_t end, std::vector<HalfEdge>& found) {
-                                        for (auto h = static_cast<HalfEdge>(begin); h < end; ++h)
-                                          if (mesh_.start[h] != kNone && h < mesh_.twin[h] && test(h))
-                                            found.push_back(h);
-                                      });
+    return parallel_select(mesh_.start.size(),
+                           [&](HalfEdge h) { return mesh_.start[h] != kNone && h < mesh_.twin[h] && test(h); });
   }
 
   void delaunay() {
@@ -237,11 +229,9 @@ class SurfaceImprover {
   }
 
   void smooth() {
-    std::vector<VertexIndex> vertices = parallel_collect<VertexIndex>(
-        mesh_.points.size(), kRange, [&](std::size_t begin, std::size_t end, std::vector<VertexIndex>& found) {
-          for (auto v = static_cast<VertexIndex>(begin); v < end; ++v)
-            if (mesh_.is_marked(v, WorkingMesh::kForSmoothing) && mesh_.outgoing[v] != kNone) found.push_back(v);
-        });
+    std::vector<VertexIndex> vertices = parallel_select(mesh_.points.size(), [&](VertexIndex v) {
+      return mesh_.is_marked(v, WorkingMesh::kForSmoothing) && mesh_.outgoing[v] != kNone;
+    });
     std::atomic<std::uint64_t> moves = 0;
     blocks_.run(
         std::move(vertices), [](VertexIndex v) { return v; },

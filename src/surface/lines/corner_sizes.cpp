@@ -1,13 +1,11 @@
-#include "surface/lines/corner_sizes.h"
-
 #include "base/core/parallel.h"
 #include "base/geometry/measures.h"
 #include "base/geometry/triangle_tree.h"
 #include "sizing/field/change_size_field.h"
+#include "surface/lines/line_sizes.h"
 
 #include <algorithm>
 #include <map>
-#include <optional>
 
 namespace octafront::surface {
 

@@ -1,11 +1,10 @@
-#include "surface/lines/flat_sizes.h"
 
 #include <octafront/surface_mesh.h>
 
 #include "base/core/parallel.h"
 #include "base/geometry/measures.h"
 #include "base/geometry/spatial_order.h"
-#include "surface/lines/thinned.h"
+#include "surface/lines/line_sizes.h"
 
 #include <algorithm>
 #include <cmath>

@@ -1,8 +1,8 @@
 #include "surface/lines/merge_lines.h"
 
 #include "base/geometry/measures.h"
+#include "surface/edits/coarsen.h"
 #include "surface/edits/line_edits.h"
-#include "surface/edits/star_collapse.h"
 #include "surface/edits/sweep.h"
 
 #include <algorithm>

@@ -1,7 +1,6 @@
-#include "surface/lines/narrow_strips.h"
-
 #include "base/core/parallel.h"
 #include "sizing/field/change_size_field.h"
+#include "surface/lines/line_sizes.h"
 #include "surface/lines/point_grid.h"
 
 #include <algorithm>

@@ -5,7 +5,7 @@
 #include "base/core/disjoint_sets.h"
 #include "base/geometry/measures.h"
 #include "base/mesh/vertices_by_place.h"
-#include "surface/edits/star_collapse.h"
+#include "surface/edits/coarsen.h"
 
 #include <algorithm>
 #include <array>

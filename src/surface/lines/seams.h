@@ -1,16 +1,8 @@
 #pragma once
 
-// How the surface front works on a complex. Along *seams* more than two patches meet, or one ends: there
-// no surface is a manifold. So the complex is cut open along them, and each loop of a cut gets a back, a fan of
-// triangles around a tip: a closed manifold again, on which everything else works as on a single surface. Backs have no
-// shape that matters: nobody puts points there or turns their edges. Vertices on a cut exist once in each part; what
-// becomes of them is decided for all of them at once. In the end the backs are dropped and the cuts are sewn.
-//
-// A periodic complex is cut along the borders of its periodic faces, too. What lies on them has copies at other places,
-// and is decided for all of these at once.
-
 #include <octafront/run_context.h>
 
+#include "base/geometry/live_triangles.h"
 #include "base/mesh/known_surface.h"
 #include "periodic/periodic_cell.h"
 #include "surface/edits/coarsen.h"
@@ -21,6 +13,15 @@
 #include <vector>
 
 namespace octafront::surface {
+
+// How the surface front works on a complex. Along *seams* more than two patches meet, or one ends: there
+// no surface is a manifold. So the complex is cut open along them, and each loop of a cut gets a back, a fan of
+// triangles around a tip: a closed manifold again, on which everything else works as on a single surface. Backs have no
+// shape that matters: nobody puts points there or turns their edges. Vertices on a cut exist once in each part; what
+// becomes of them is decided for all of them at once. In the end the backs are dropped and the cuts are sewn.
+//
+// A periodic complex is cut along the borders of its periodic faces, too. What lies on them has copies at other places,
+// and is decided for all of these at once.
 
 /// A complex cut open. Triangle t of the complex is face t of `input`; backs follow.
 struct SeamedSurface {
@@ -75,5 +76,30 @@ std::vector<VertexIndex> sewn_vertices(const WorkingMesh& mesh);
 
 /// The living triangles that are no backs.
 std::vector<std::uint32_t> front_triangles(const WorkingMesh& mesh);
+
+/// The working mesh as LiveTriangles looks at it: sewn, without backs. Seams must not change while it is used.
+class SewnMesh {
+ public:
+  explicit SewnMesh(const WorkingMesh& mesh) : mesh_(mesh) {
+    if (mesh.first_back != kNone) sewn_ = sewn_vertices(mesh);
+  }
+
+  std::size_t triangle_count() const { return mesh_.triangle_count(); }
+  bool is_removed(std::size_t t) const { return mesh_.is_removed(t) || mesh_.is_back(t); }
+  Vec3 corner(std::uint32_t t, int i) const { return mesh_.corner(t, i); }
+  Triangle triangle(std::uint32_t t) const {
+    const Triangle own = mesh_.triangle(t);
+    return {vertex(own[0]), vertex(own[1]), vertex(own[2])};
+  }
+  IdTriangle sewn(const IdTriangle& t) const {
+    return {{vertex(t.ids[0]), vertex(t.ids[1]), vertex(t.ids[2])}, t.corners};
+  }
+  /// Those that came later are not on seams.
+  VertexIndex vertex(VertexIndex v) const { return v < sewn_.size() ? sewn_[v] : v; }
+
+ private:
+  const WorkingMesh& mesh_;
+  std::vector<VertexIndex> sewn_;
+};
 
 }  // namespace octafront::surface

@@ -1,8 +1,7 @@
-#include "surface/remeshing/draw_to_input.h"
-
 #include "base/geometry/live_triangles.h"
 #include "base/geometry/measures.h"
-#include "surface/lines/sewn_mesh.h"
+#include "surface/lines/seams.h"
+#include "surface/remeshing/mend_folds.h"
 
 #include <algorithm>
 #include <array>

@@ -1,3 +1,4 @@
+
 #include "surface/remeshing/mend_folds.h"
 
 #include "base/core/disjoint_sets.h"
@@ -6,12 +7,10 @@
 #include "base/geometry/measures.h"
 #include "base/geometry/predicates.h"
 #include "surface/edits/line_edits.h"
-#include "surface/lines/sewn_mesh.h"
+#include "surface/lines/seams.h"
 
 #include <algorithm>
-#include <cmath>
 #include <numbers>
-#include <optional>
 #include <queue>
 
 namespace octafront::surface {
@@ -102,11 +101,8 @@ std::vector<std::uint8_t> with_small_rims(const WorkingMesh& mesh, const FoldLim
     const double most = std::min(limits.tolerance, limits.size_part * std::min(mesh.size[v], mesh.size[w]));
     return squared_length(mesh.points[v] - mesh.points[w]) < most * most;
   };
-  const std::vector<HalfEdge> short_ones = parallel_collect<HalfEdge>(
-      mesh.start.size(), kRangeOfFolds, [&](std::size_t begin, std::size_t end, std::vector<HalfEdge>& found) {
-        for (auto h = static_cast<HalfEdge>(begin); h < end; ++h)
-          if (!mesh.is_removed(h / 3) && is_short(h)) found.push_back(h);
-      });
+  const std::vector<HalfEdge> short_ones = parallel_select(
+      mesh.start.size(), [&](HalfEdge h) { return !mesh.is_removed(h / 3) && is_short(h); }, kRangeOfFolds);
   if (short_ones.empty()) return fixed;
   DisjointSets joined(mesh.points.size());
   for (const HalfEdge h : short_ones) joined.join(mesh.start[h], mesh.end(h));

@@ -1,21 +1,25 @@
 #pragma once
 
-// What is folded, crosses or deviates, made good place by place: folds taken off the input before
-// the front (unfold), places mended at the end (mend_folds), triangles drawn to the input where they deviate
-// (draw_to_input).
-
 #include <octafront/run_context.h>
 
 #include "base/geometry/leeway.h"
 #include "base/geometry/triangle_tree.h"
+#include "base/mesh/edge_table.h"
+#include "surface/edits/deviation.h"
 #include "surface/edits/working_mesh.h"
 
 #include <cmath>
 #include <cstdint>
 #include <limits>
+#include <optional>
+#include <span>
 #include <vector>
 
 namespace octafront::surface {
+
+// What is folded, crosses or deviates, made good place by place: folds taken off the input before
+// the front (unfold), places mended at the end (mend_folds), triangles drawn to the input where they deviate
+// (draw_to_input).
 
 /// What counts as a fold or as a bad triangle, and how far the surface may move to be rid of it.
 struct FoldLimits {
@@ -50,5 +54,32 @@ struct MendedFolds {
 /// the tolerance. Edges turn and collapse and vertices move where that leaves less of both, exactly without new
 /// crossings. Cost: O(n), and about a millisecond for each place.
 MendedFolds mend_folds(WorkingMesh& mesh, const FoldLimits& limits, const RunContext& context);
+
+/// A surface without its folds, and what that took.
+struct Unfolded {
+  SurfaceMesh surface;  ///< clean, of the same topology; patches and sources kept
+  MendedFolds mended;   ///< `moved`: per triangle of `surface`
+};
+
+/// The input without folds, flaps and spikes that can be taken away within the tolerance in all (input units); see
+/// mend_folds(). Patch borders stay. `edges` as make_edge_table() makes them. nullopt if nothing was done. Requires a
+/// clean surface.
+std::optional<Unfolded> unfold(const SurfaceMesh& surface, const EdgeTable& edges, double tolerance,
+                               const RunContext& context);
+
+/// No new triangle is worse than this 2r/R, unless one was: what is mended for its shape deviates again.
+inline constexpr double kFairShape = 0.35;
+
+/// Brings the mesh nearer to the input where the mesh deviates. Each place names a triangle of the mesh (by its number
+/// there) and a point of the input. A triangle that faces as the input does at the point gets the point as a vertex:
+/// inside, on one of its edges, or as the new place of its nearest corner. Where none of these is sound, an edge of the
+/// triangle is halved, and its middle put on the input. No change makes new crossings, which is tested exactly.
+///
+/// Of several places at one triangle only the farthest counts, so the caller must look again for what still deviates.
+/// `tree` is over the input's triangles. `is_fixed` says by vertex which ones stay; vertices beyond its end may move.
+/// No new triangle has a 2r/R below `least_shape`, unless an old one had. Returns the number of points put in.
+std::uint64_t draw_to_input(WorkingMesh& mesh, const InputSurface& input, const TriangleTree& tree,
+                            const std::vector<std::uint8_t>& is_fixed, std::span<const FarPlace> places,
+                            double least_shape = kFairShape);
 
 }  // namespace octafront::surface

@@ -1,11 +1,11 @@
 // The steps of a single surface.
 
 #include "base/geometry/measures.h"
+#include "surface/lines/line_sizes.h"
 #include "surface/lines/merge_lines.h"
-#include "surface/lines/thinned.h"
-#include "surface/remeshing/draw_to_input.h"
-#include "surface/remeshing/far_places.h"
 #include "surface/remeshing/front_kind.h"
+#include "surface/remeshing/mend_folds.h"
+#include "surface/remeshing/outcome.h"
 
 #include <algorithm>
 #include <limits>

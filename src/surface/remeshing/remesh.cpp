@@ -1,9 +1,8 @@
 #include "surface/remeshing/remesh.h"
 
 #include "base/core/validate.h"
-#include "surface/edits/crossings.h"
-#include "surface/edits/source_triangles.h"
-#include "surface/edits/turning.h"
+#include "surface/edits/faces_of_input.h"
+#include "surface/edits/working_mesh.h"
 #include "surface/front/surface_front.h"
 #include "surface/remeshing/front_kind.h"
 #include "surface/remeshing/periodic_faces.h"

@@ -1,6 +1,4 @@
-#include "surface/remeshing/round_sizes.h"
-
-#include "surface/lines/thinned.h"
+#include "surface/remeshing/front_kind.h"
 
 #include <algorithm>
 #include <utility>

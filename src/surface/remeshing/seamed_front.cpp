@@ -1,14 +1,11 @@
 // The steps of a complex, on its parts cut open along seams (seams.h).
 
 #include "base/core/elementary.h"
-#include "surface/edits/crossings.h"
-#include "surface/lines/corner_sizes.h"
-#include "surface/lines/flat_sizes.h"
-#include "surface/lines/least_sizes.h"
-#include "surface/lines/thinned.h"
-#include "surface/remeshing/draw_to_input.h"
-#include "surface/remeshing/far_places.h"
+#include "surface/edits/working_mesh.h"
+#include "surface/lines/line_sizes.h"
 #include "surface/remeshing/front_kind.h"
+#include "surface/remeshing/mend_folds.h"
+#include "surface/remeshing/outcome.h"
 #include "surface/remeshing/periodic_faces.h"
 
 #include <algorithm>

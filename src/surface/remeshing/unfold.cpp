@@ -1,6 +1,6 @@
-#include "surface/remeshing/unfold.h"
-
 #include <octafront/surface_mesh.h>
+
+#include "surface/remeshing/mend_folds.h"
 
 namespace octafront::surface {
 

@@ -2,7 +2,6 @@
 #include <octafront/io.h>
 
 #include "sizing/field/octree_field.h"
-#include "sizing/sources/kept_surface.h"
 #include "sizing/sources/make_size_field.h"
 #include "support/named_surfaces.h"
 #include "support/temporary_folder.h"

@@ -12,7 +12,6 @@
 #include "base/shared/virtual_ranks.h"
 #include "formats/parts/division.h"
 #include "formats/parts/mesh_parts.h"
-#include "formats/parts/share_piece.h"
 #include "formats/small_files.h"
 #include "support/mixed_mesh.h"
 #include "support/rich_mesh.h"

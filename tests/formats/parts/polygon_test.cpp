@@ -1,3 +1,4 @@
+
 #include "formats/parts/polygon.h"
 
 #include "base/geometry/predicates.h"

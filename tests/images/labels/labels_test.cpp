@@ -2,8 +2,8 @@
 #include <octafront/image.h>
 
 #include "images/files/label_names.h"
+#include "images/labels/label_steps.h"
 #include "images/labels/runs.h"
-#include "images/labels/thinness.h"
 #include "images/small_images.h"
 
 #include <algorithm>

@@ -1,10 +1,9 @@
 // What of the input is said to force poor elements.
 
-#include "pipeline/stages/narrow_place.h"
-
 #include <octafront/complex.h>
 #include <octafront/generate.h>
 
+#include "pipeline/stages/requirements.h"
 #include "support/faceted.h"
 #include "support/named_surfaces.h"
 

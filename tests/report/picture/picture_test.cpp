@@ -3,11 +3,10 @@
 #include <octafront/quality.h>
 #include <octafront/run_context.h>
 
-#include "report/picture/camera.h"
+#include "report/picture/canvas.h"
 #include "report/picture/colours.h"
 #include "report/picture/raster.h"
 #include "report/picture/scene.h"
-#include "report/picture/stroke_font.h"
 #include "support/named_surfaces.h"
 #include "support/rich_mesh.h"
 

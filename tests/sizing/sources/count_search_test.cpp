@@ -1,4 +1,4 @@
-#include "sizing/sources/count_search.h"
+#include "sizing/sources/budget.h"
 
 #include <cmath>
 #include <functional>

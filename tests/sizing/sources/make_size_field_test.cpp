@@ -1,3 +1,4 @@
+
 #include "sizing/sources/make_size_field.h"
 
 #include <octafront/error.h>

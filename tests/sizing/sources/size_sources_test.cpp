@@ -2,8 +2,7 @@
 
 #include "sizing/field/octree_field.h"
 #include "sizing/size_cases.h"
-#include "sizing/sources/check_size_options.h"
-#include "sizing/sources/kept_surface.h"
+#include "sizing/sources/make_size_field.h"
 #include "sizing/sources/surface_samples.h"
 #include "support/labelled_walls.h"
 #include "support/named_surfaces.h"

@@ -1,12 +1,11 @@
 // Sizes by distance, on meshes, across walls.
 
-#include "sizing/sources/sizes_in_space.h"
-
 #include <octafront/error.h>
 
 #include "sizing/field/mesh_sizes.h"
 #include "sizing/size_cases.h"
 #include "sizing/sources/gaps.h"
+#include "sizing/sources/sources.h"
 #include "support/named_surfaces.h"
 
 #include <algorithm>

@@ -1,6 +1,5 @@
-#include "soup/mend/based_cap.h"
-
 #include "base/geometry/measures.h"
+#include "soup/mend/caps.h"
 #include "support/random.h"
 
 #include <algorithm>

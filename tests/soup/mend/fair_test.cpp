@@ -1,6 +1,5 @@
-#include "soup/mend/fair.h"
-
 #include "base/geometry/measures.h"
+#include "soup/mend/caps.h"
 
 #include <algorithm>
 #include <cmath>

@@ -1,8 +1,7 @@
-#include "soup/mend/fin_strips.h"
-
 #include <octafront/mend.h>
 
 #include "base/mesh/edge_table.h"
+#include "soup/mend/caps.h"
 #include "support/named_surfaces.h"
 
 #include <algorithm>

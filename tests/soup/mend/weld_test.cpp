@@ -1,6 +1,5 @@
-#include "soup/mend/weld.h"
-
 #include "base/mesh/surface_topology.h"
+#include "soup/mend/mend_steps.h"
 #include "support/named_surfaces.h"
 
 #include <gtest/gtest.h>

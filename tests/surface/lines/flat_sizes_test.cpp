@@ -1,7 +1,6 @@
-#include "surface/lines/flat_sizes.h"
 
 #include "support/named_surfaces.h"
-#include "surface/lines/thinned.h"
+#include "surface/lines/line_sizes.h"
 
 #include <cmath>
 #include <numbers>

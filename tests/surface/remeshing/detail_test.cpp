@@ -4,12 +4,12 @@
 
 #include "base/geometry/measures.h"
 #include "support/named_surfaces.h"
-#include "surface/edits/crossings.h"
 #include "surface/edits/deviation.h"
 #include "surface/edits/kept_places.h"
+#include "surface/edits/working_mesh.h"
+#include "surface/remeshing/mend_folds.h"
 #include "surface/remeshing/remesh.h"
 #include "surface/remeshing/surface_check.h"
-#include "surface/remeshing/unfold.h"
 
 #include <algorithm>
 #include <numbers>

@@ -12,9 +12,8 @@
 #include "support/named_surfaces.h"
 #include "support/random.h"
 #include "surface/edits/coarsen.h"
-#include "surface/edits/crossings.h"
-#include "surface/front/insertion.h"
-#include "surface/front/shaping.h"
+#include "surface/edits/working_mesh.h"
+#include "surface/front/front_steps.h"
 #include "surface/front/surface_front.h"
 
 #include <algorithm>

@@ -1,7 +1,5 @@
-#include "images/files/dicom/segmentation.h"
-
 #include "base/core/wording.h"
-#include "images/files/grids.h"
+#include "images/files/dicom/series.h"
 #include "images/files/voxels.h"
 
 #include <algorithm>

@@ -7,9 +7,8 @@
 #include "base/core/parallel.h"
 #include "base/core/thread_limit.h"
 #include "base/core/wording.h"
-#include "images/files/dicom/segmentation.h"
 #include "images/files/dicom/unpack.h"
-#include "images/files/grids.h"
+#include "images/files/voxels.h"
 
 #include <algorithm>
 #include <cmath>

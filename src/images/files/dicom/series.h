@@ -2,6 +2,7 @@
 
 #include <octafront/image.h>
 
+#include "formats/containers/input.h"
 #include "images/files/dicom/slices.h"
 #include "images/files/image_readers.h"
 
@@ -10,6 +11,11 @@
 #include <vector>
 
 namespace octafront::image {
+
+/// A DICOM segmentation (PS3.3, A.51) as an image of labels: a voxel has the number of its segment, of several the
+/// last; of segments of parts of voxels those that have half of it or more. Names are those of the segments. Throws
+/// InputError for frames that make no volume.
+Image read_segmentation(const io::Input& input, const SliceFile& file);
 
 /// Files by number, opened when they are needed.
 struct SliceFiles {
