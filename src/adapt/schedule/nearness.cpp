@@ -1,14 +1,12 @@
 #include "adapt/schedule/nearness.h"
 
-#include "base/core/flat_map.h"
 #include "base/core/parallel.h"
 #include "base/core/renumber.h"
 #include "base/geometry/hausdorff.h"
 #include "base/geometry/measures.h"
+#include "base/geometry/same_place.h"
 
 #include <algorithm>
-#include <array>
-#include <bit>
 #include <cmath>
 #include <map>
 #include <utility>
@@ -56,30 +54,15 @@ void add_triangles(const std::vector<TriangleCorners>& list, SurfaceMesh& surfac
   }
 }
 
-/// Points by their bits.
-struct PointKeys {
-  using Key = std::array<std::uint64_t, 3>;
-  static constexpr Key kEmpty{~std::uint64_t{0}, ~std::uint64_t{0}, ~std::uint64_t{0}};
-  static constexpr std::uint64_t hash(const Key& key) {
-    std::uint64_t sum = 0;
-    for (const std::uint64_t k : key) sum = (sum ^ k) * 0x9e3779b97f4a7c15u, sum ^= sum >> 32;
-    return sum * 0x9e3779b97f4a7c15u;
-  }
-};
-
 /// Corners at one place become one point: how far it is away is asked once.
 void join_points(SurfaceMesh& surface) {
-  FlatMap<PointKeys::Key, VertexIndex, PointKeys> number(surface.points.size() / 4);
+  const std::vector<VertexIndex> first = first_at_place(surface.points);
+  PointsTaken taken(surface.points);
   std::vector<Vec3> points;
-  for (Triangle& t : surface.triangles)
-    for (VertexIndex& v : t) {
-      const Vec3 p = surface.points[v];
-      const PointKeys::Key key{std::bit_cast<std::uint64_t>(p.x), std::bit_cast<std::uint64_t>(p.y),
-                               std::bit_cast<std::uint64_t>(p.z)};
-      const auto next = static_cast<VertexIndex>(points.size());
-      v = number.find_or_add(key, next);
-      if (v == next) points.push_back(p);
-    }
+  for (Triangle& t : surface.triangles) {
+    for (VertexIndex& v : t) v = first[v];
+    t = taken.take(t, points);
+  }
   surface.points = std::move(points);
 }
 
