@@ -3,6 +3,7 @@
 
     bench/pages/house.py [COMMIT ...]   prints docs/measured/house.md: the tree as it is, beside older commits; the part that
                                     bench/pages/touched.py wrote stays as it is committed
+    bench/pages/house.py --picture FILE.svg COMMIT   draws the rooms of that commit beside those of the tree as it is
 
 Wings are those that ARCHITECTURE.md of that commit names, rooms those of src/WING/README.md (before: of ARCHITECTURE.md); an arrow is a room (or wing) of which a file includes one of
 another; a circle is a set of rooms that reach each other; a class begins in the first column and ends there.
@@ -96,8 +97,57 @@ class House:
                 sum(map(len, self.wing_arrows.values())), len(circles(self.wing_arrows)), len(self.files), max(in_room.values()), f"{self.lines():,}",
                 self.longest_class()]
 
+    def order(self):
+        """The rooms by wings, each behind all that it includes from."""
+        wings = in_order(self.wings, self.wing_arrows)
+        rooms = in_order(self.rooms, self.room_arrows)
+        return sorted(rooms, key=lambda room: wings.index(room.split("/")[0]))
+
+
+def in_order(names, arrows):
+    placed = []
+    while len(placed) < len(names):
+        ready = [n for n in names if n not in placed and not arrows.get(n, set()) - set(placed)]
+        placed += ready[:1] or [n for n in names if n not in placed]
+    return placed
+
+
+CELL, LABEL, HEAD = 10, 210, 30  # of the picture; pixels
+LINES_OF_PIXEL = 130
+
+
+def panel(house, x0):
+    """A row and a column for each room: a filled cell where the room of the row includes from that of the column."""
+    order = house.order()
+    at = {room: k for k, room in enumerate(order)}
+    side = CELL * len(order)
+    yield f'<text x="{x0}" y="16" font-size="13">{house.name}: {len(order)} rooms, {sum(map(len, house.room_arrows.values()))} arrows, {house.lines():,} lines in src/</text>'
+    yield f'<rect x="{x0 + LABEL}" y="{HEAD}" width="{side}" height="{side}" fill="#fff" stroke="#bbb"/>'
+    for room, k in at.items():
+        y, lines = HEAD + CELL * k, house.lines(house.room, room)
+        yield f'<text x="{x0 + 135}" y="{y + 8}" font-size="9" text-anchor="end">{room}</text>'
+        yield f'<rect x="{x0 + 139}" y="{y + 2}" width="{lines / LINES_OF_PIXEL:.0f}" height="6" fill="#9ab"/>'
+        yield f'<rect x="{x0 + LABEL + CELL * k}" y="{y}" width="{CELL}" height="{CELL}" fill="#ddd"/>'
+        for other in sorted(house.room_arrows.get(room, ()), key=at.get):
+            same = room.split("/")[0] == other.split("/")[0]
+            yield f'<rect x="{x0 + LABEL + CELL * at[other] + 1}" y="{y + 1}" width="{CELL - 2}" height="{CELL - 2}" fill="{"#c60" if same else "#246"}"/>'
+
+
+def picture(houses):
+    widths = [LABEL + CELL * len(house.rooms) + 30 for house in houses]
+    height = HEAD + CELL * max(len(house.rooms) for house in houses) + 40
+    yield f'<svg xmlns="http://www.w3.org/2000/svg" width="{sum(widths) + 10}" height="{height}" font-family="sans-serif">'
+    yield '<rect width="100%" height="100%" fill="#fff"/>'
+    for k, house in enumerate(houses):
+        yield from panel(house, 10 + sum(widths[:k]))
+    yield (f'<text x="10" y="{height - 10}" font-size="11">A filled cell: the room of the row includes from that of the column (orange: of its own wing); '
+           f'none above the diagonal: no circles. Bars: lines.</text></svg>')
+
 
 def main():
+    if sys.argv[1:2] == ["--picture"]:
+        pathlib.Path(sys.argv[2]).write_text("\n".join(picture([House(sys.argv[3]), House(None)])) + "\n")
+        return
     houses = [House(commit) for commit in sys.argv[1:]] + [House(None)]
     now = houses[-1]
     print("# The house\n\nWhat `ARCHITECTURE.md` says in words, counted.", written_by(" ".join(["bench/pages/house.py", *sys.argv[1:]])) + ".\n")
@@ -108,6 +158,7 @@ def main():
     print("\nAn arrow: a file of one includes a header of the other.\n")
     wings = sorted(now.wings, key=lambda w: -now.lines(now.wing, w))
     print(f"Lines of the wings: {', '.join(f'`{wing}` {now.lines(now.wing, wing):,}' for wing in wings)}.")
+    print("\n![Rooms and what they include from, before and now](../images/house.svg)")
     _, _, touched = git("show", "HEAD:docs/measured/house.md").partition(TOUCHED)
     if touched:
         print("\n" + TOUCHED + touched, end="")
