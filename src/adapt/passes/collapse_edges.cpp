@@ -163,6 +163,7 @@ class EdgeCollapser {
   }
 
   bool plan_tets(Plan& out, float rival) {
+    if (!mends_ && is_too_far(out)) return false;
     const std::vector<TetIndex>& star = piece_.star(out.gone);
     out.old.assign(star.begin(), star.end());
     float had = 1;
@@ -189,6 +190,23 @@ class EdgeCollapser {
     return !out.fresh.empty();
   }
 
+  bool is_long(VertexIndex from, VertexIndex to) const { return piece_.is_longer(from, to, kLongestOfCollapse); }
+
+  /// Whether the vertices behind the ring tell already that lengths do not allow it: most often they do, without the
+  /// star.
+  bool is_too_far(const Plan& plan) const {
+    bool is_far = false;
+    for (const TetIndex t : ring_.tets) {
+      const HalfFace o = piece_.complex.across[piece_.complex.opposite(t, plan.onto)];
+      if (is_outside(o)) continue;
+      const VertexIndex v = piece_.complex.apex(o);
+      if (is_long(plan.gone, v)) return false;
+      is_far = is_far || is_long(plan.onto, v);
+    }
+    return is_far &&
+           std::none_of(ring_.ring.begin(), ring_.ring.end(), [&](VertexIndex v) { return is_long(plan.gone, v); });
+  }
+
   /// Whether no new edge is longer than the longest there was, or than is wanted.
   bool lengths_allow(const Plan& plan) {
     around_.clear();
@@ -196,11 +214,11 @@ class EdgeCollapser {
     for (const TetIndex t : plan.old)
       for (const VertexIndex v : piece_.tet(t))
         if (v != plan.gone && v != plan.onto && seen_[v] != stamp_) seen_[v] = stamp_, around_.push_back(v);
-    const auto is_long = [&](VertexIndex from) {
-      return [&, from](VertexIndex v) { return piece_.is_longer(from, v, kLongestOfCollapse); };
+    const auto any_long = [&](VertexIndex from) {
+      return std::any_of(around_.begin(), around_.end(), [&](VertexIndex v) { return is_long(from, v); });
     };
-    if (std::none_of(around_.begin(), around_.end(), is_long(plan.onto))) return true;
-    if (std::none_of(around_.begin(), around_.end(), is_long(plan.gone))) return false;
+    if (!any_long(plan.onto)) return true;
+    if (!any_long(plan.gone)) return false;
     const auto longest = [&](VertexIndex from) {
       double most = 0;
       for (const VertexIndex v : around_) most = std::max(most, piece_.edge_length(from, v));

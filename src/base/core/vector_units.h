@@ -17,6 +17,13 @@
 
 namespace octafront {
 
+/// What is to be read soon: memory brings it meanwhile.
+OCTAFRONT_KERNEL void fetch_soon([[maybe_unused]] const void* at) {
+#if defined(__GNUC__)
+  __builtin_prefetch(at);
+#endif
+}
+
 // What vector units have an instruction for; std::min and std::max take references.
 OCTAFRONT_KERNEL double greater(double a, double b) {
   return a > b ? a : b;

@@ -2,6 +2,7 @@
 
 #include "base/core/buckets.h"
 #include "base/core/validate.h"
+#include "base/core/vector_units.h"
 
 #include <algorithm>
 #include <stdexcept>
@@ -230,6 +231,7 @@ const std::vector<TetIndex>& TetComplex::star_from(VertexIndex v, TetIndex start
       const HalfFace o = beside[i];
       if (corners[i] == v || is_outside(o) || marks[o / 4] == seen) continue;
       marks[o / 4] = seen;
+      fetch_soon(&tets[o / 4]), fetch_soon(&across[4 * (o / 4)]);
       star_.push_back(o / 4);
     }
   }
