@@ -5,7 +5,7 @@
 #     --quick   only models that take a second or so
 #     --write   rewrites bench/hashes.txt: for a change that alters meshes on purpose
 #     PROGRAM   an octafront to try; by default build/release's, built first
-# Prints a line for each mesh that differs; status 1 if there are any. Everything takes a quarter of an hour on two cores.
+# Prints a line for each mesh that differs; status 1 if there are any. Everything takes one to two minutes on two cores.
 set -euo pipefail
 cd "$(dirname "$0")/.."
 source scripts/lib/apt.sh

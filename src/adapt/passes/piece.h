@@ -93,23 +93,26 @@ OCTAFRONT_KERNEL SquaredBounds squared_bounds(const Vertex& p, const Vertex& q, 
 }
 /// A vertex on the way between two, without a place or a kind: with its metric where it does not get its own.
 Vertex between(const Vertex& a, const Vertex& b, double part);
-/// The score of a tet that is worth so much, 0 if it is not positive by exact sign.
-OCTAFRONT_KERNEL float score_by(double worth, Vec3 p, Vec3 q, Vec3 r, Vec3 s) {
-  return orient3d(p, q, r, s) <= 0 ? 0 : std::max(static_cast<float>(worth), 1e-30f);
+/// The score of a positive tet that is worth so much.
+OCTAFRONT_KERNEL float positive_score(double worth) {
+  return std::max(static_cast<float>(worth), 1e-30f);
 }
-/// The same in metrics of size, which make all lengths longer alike: the shape alone counts.
+/// The score of a tet, 0 if it is not positive by exact sign, in metrics of size, which make all lengths longer alike:
+/// the shape alone counts. `worth`: its metric_score().
 OCTAFRONT_KERNEL float score_by_shape(double worth, Vec3 p, Vec3 q, Vec3 r, Vec3 s) {
   // Of elements of a better score the sign of the volume is beyond doubt: rounding is 1e-14 of the edges at most.
   constexpr double kCertainScore = 1e-9;
-  return worth > kCertainScore ? static_cast<float>(worth) : score_by(worth, p, q, r, s);
+  if (worth > kCertainScore) return static_cast<float>(worth);
+  return orient3d(p, q, r, s) > 0 ? positive_score(worth) : 0;
 }
 /// The score of a tet with these corners, 0 if it is not positive by exact sign.
 OCTAFRONT_KERNEL float score_of_corners(const std::array<const Vertex*, 4>& c, bool isotropic) {
   const Vec3 p = c[0]->at, q = c[1]->at, r = c[2]->at, s = c[3]->at;
   const double det = detail::orient3d_det(p, q, r, s);
   if (isotropic) return score_by_shape(metric_score(det, p, q, r, s), p, q, r, s);
+  if (orient3d(p, q, r, s) <= 0) return 0;
   const Vertex& d = densest_of(c);
-  return score_by(metric_score(det, d.metric, d.density, p, q, r, s), p, q, r, s);
+  return positive_score(metric_score(det, d.metric, d.density, p, q, r, s));
 }
 
 /// A mesh whose every part carries a number: tets, half-faces on walls, edges on lines. Flat arrays.
