@@ -8,8 +8,8 @@
 #include <octafront/surface_mesh.h>
 #include <octafront/vec.h>
 
+#include "base/geometry/same_place.h"
 #include "base/geometry/triangle_tree.h"
-#include "base/mesh/vertices_by_place.h"
 #include "periodic/periodic_map.h"
 
 #include <array>

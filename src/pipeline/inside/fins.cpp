@@ -5,10 +5,10 @@
 
 #include "base/core/wording.h"
 #include "base/geometry/measures.h"
+#include "base/geometry/same_place.h"
 #include "base/geometry/triangle_tree.h"
 #include "base/mesh/complex.h"
 #include "base/mesh/face_table.h"
-#include "base/mesh/vertices_by_place.h"
 #include "pipeline/inside/polygons.h"
 
 #include <algorithm>

@@ -3,7 +3,7 @@
 #include <octafront/error.h>
 
 #include "base/core/groups.h"
-#include "base/mesh/vertices_by_place.h"
+#include "base/geometry/same_place.h"
 
 #include <algorithm>
 #include <cmath>

@@ -3,8 +3,8 @@
 #include "base/geometry/measures.h"
 #include "base/geometry/plane_mesh.h"
 #include "base/geometry/predicates.h"
+#include "base/geometry/same_place.h"
 #include "base/geometry/triangle_tree.h"
-#include "base/mesh/vertices_by_place.h"
 #include "soup/cells/cell_steps.h"
 
 #include <functional>

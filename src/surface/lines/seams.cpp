@@ -4,7 +4,7 @@
 
 #include "base/core/disjoint_sets.h"
 #include "base/geometry/measures.h"
-#include "base/mesh/vertices_by_place.h"
+#include "base/geometry/same_place.h"
 #include "surface/edits/coarsen.h"
 
 #include <algorithm>
